@@ -42,6 +42,9 @@ public:
     void add(std::int64_t n_bonds, const std::int64_t *atoms, const double *lengths);
     void add_block(std::int64_t n_chains, std::int64_t n_bonds, std::int64_t first_atom, const double *lengths);
     void add_bonds(std::int64_t n_bonds, const std::int64_t *pairs, const double *lengths);
+    // sum c_i r_i = 0, and bonds of the molecules in which these are (rigid/linear.hpp).
+    void add_linear(std::int64_t n_relations, const std::int64_t *sizes, const std::int64_t *atoms,
+                    const double *coefficients, std::int64_t n_bonds, const std::int64_t *pairs, const double *lengths);
     void add_molecules(std::int64_t n_molecules, std::int64_t n_atoms, std::int64_t first_atom, std::int64_t n_bonds,
                        const std::int64_t *pairs, const double *lengths);
 

@@ -167,36 +167,6 @@ void Chains::add_rigid_molecules(std::int64_t count, std::int64_t n_atoms, std::
     commit_rigid(all, count * n_bonds);
 }
 
-// Linear groups as loose parts, behind the bodies; and what they imply. Bonds of length zero are relations.
-rigid::LooseParts Chains::take_linear(const BondList &list, const double *lengths, std::int64_t n_lengths,
-                                      rigid::Cliques &cliques, std::vector<unsigned char> &implied) const {
-    const rigid::Linear groups(cliques.linear);
-    rigid::LooseParts parts;
-    double longest = 0;
-    for (const std::int64_t k : cliques.linear_bonds) longest = std::max(longest, lengths[k % n_lengths]);
-    for (const std::int64_t k : rigid::implied_beside(groups, masses_, list, lengths, n_lengths, cliques)) {
-        implied[at(k)] = 1;
-        parts.links.emplace_back(list.pairs[2 * k], list.pairs[2 * k + 1]);
-    }
-    for (std::int64_t k = 0; k < list.n_bonds; ++k) {
-        if (lengths[k % n_lengths] > 0) continue;
-        const std::int64_t i = list.pairs[2 * k], j = list.pairs[2 * k + 1];
-        if (masses_.fixed(i - list.base) || masses_.fixed(j - list.base))
-            throw bond_error(list, Status::value, k, "has the length 0, and one of its atoms is held fixed");
-        implied[at(k)] = 1;
-        parts.links.emplace_back(i, j);
-    }
-    parts.loose.resize(cliques.sizes.size());
-    for (std::size_t p = 0; p < groups.parts().size(); ++p) {
-        const std::vector<std::int64_t> &atoms = groups.parts()[p];
-        cliques.sizes.push_back(static_cast<std::int64_t>(atoms.size()));
-        cliques.atoms.insert(cliques.atoms.end(), atoms.begin(), atoms.end());
-        cliques.places.resize(cliques.places.size() + 3 * atoms.size(), 0);
-        parts.loose.push_back({groups.relations()[p], longest > 0 ? longest : 1});
-    }
-    return parts;
-}
-
 // Where parts of the list depend, their molecules are added as bodies, or without what others imply, the others as
 // ever.
 void Chains::add_with_bodies(const BondList &list, const double *lengths, std::int64_t n_lengths) {
@@ -205,7 +175,8 @@ void Chains::add_with_bodies(const BondList &list, const double *lengths, std::i
     if (!cliques.shared.empty() || std::count(implied.begin(), implied.end(), 1) > 0)
         cliques = rigid::find_cliques(masses_, list, lengths, n_lengths, length_tolerance, implied);
     rigid::LooseParts parts;
-    if (!cliques.linear.empty()) parts = take_linear(list, lengths, n_lengths, cliques, implied);
+    const bool has_points = std::count(lengths, lengths + n_lengths, 0.0) > 0;
+    if (!cliques.linear.empty() || has_points) parts = take_linear(list, lengths, n_lengths, cliques, implied);
     FoundMolecules found;
     std::vector<std::int64_t> pairs, of_bodies, rest, rest_pairs;
     std::vector<double> its_lengths;

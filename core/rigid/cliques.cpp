@@ -37,7 +37,7 @@ public:
             if (masses.fixed(i - list.base) || masses.fixed(j - list.base) || i == j) continue;
             if (length(k) == 0) {
                 bonds_of_[i], bonds_of_[j];
-                take_linear({i, j}, std::vector<double>(6, 0), 0);
+                found_.linear.add({{i, j}, std::vector<double>(6, 0), 0});
                 continue;
             }
             bonds_of_[i].push_back({j, k});
@@ -56,7 +56,9 @@ public:
         for (std::int64_t k = 0; k < list_.n_bonds; ++k) look_around(k, false);
         found_.bonds = bonds_from(held_atoms());
         for (const std::int64_t k : found_.bonds) look_for_shared(k);
-        if (!found_.linear.empty()) gather_linear();
+        if (found_.linear.empty()) return std::move(found_);
+        take_sharing_bodies(found_.sizes, found_.atoms, found_.places, found_.linear);
+        found_.linear_bonds = bonds_from(linear_atoms());
         return std::move(found_);
     }
 
@@ -118,7 +120,7 @@ private:
         }
     }
     void check_shared(std::int64_t bond, const std::vector<std::int64_t> &atoms) {
-        if (is_together(atoms) || is_in_linear(atoms) || !depend(atoms)) return;
+        if (is_together(atoms) || found_.linear.has_together(atoms) || !depend(atoms)) return;
         if (left_out_.empty()) return found_.shared.push_back(bond);
         Group group = look_at(distances(atoms), tolerance_);
         std::vector<std::int64_t> all = atoms;
@@ -130,55 +132,7 @@ private:
         if (all.size() > atoms.size()) group.misfit = fit_places(distances(all), group.dimension, places);
         if (group.misfit.error > Decimals(distances(all), tolerance_).most()) refuse(all, group.misfit);
         note(all, group.misfit);
-        take_linear(std::move(all), std::move(places), group.dimension);
-    }
-
-    void take_linear(std::vector<std::int64_t> atoms, std::vector<double> places, int dimension) {
-        for (const std::int64_t atom : atoms) linear_of_[atom].push_back(found_.linear.size());
-        found_.linear.push_back({std::move(atoms), std::move(places), dimension});
-    }
-    bool is_in_linear(const std::vector<std::int64_t> &atoms) const {
-        const auto found = linear_of_.find(atoms[0]);
-        if (found == linear_of_.end()) return false;
-        return std::any_of(found->second.begin(), found->second.end(), [&](std::size_t g) {
-            const std::vector<std::int64_t> &its = found_.linear[g].atoms;
-            return std::all_of(atoms.begin(), atoms.end(),
-                               [&](std::int64_t atom) { return std::count(its.begin(), its.end(), atom) > 0; });
-        });
-    }
-
-    // Bodies that share atoms with linear groups are such groups, too.
-    void gather_linear() {
-        std::vector<std::int64_t> sizes, atoms;
-        std::vector<double> places;
-        const std::size_t before = found_.linear.size();
-        std::size_t first = 0;
-        for (const std::int64_t size : found_.sizes) {
-            const auto begin = static_cast<std::ptrdiff_t>(first), end = begin + static_cast<std::ptrdiff_t>(size);
-            std::vector<std::int64_t> its(found_.atoms.begin() + begin, found_.atoms.begin() + end);
-            std::vector<double> there(found_.places.begin() + 3 * begin, found_.places.begin() + 3 * end);
-            first += at(size);
-            const bool shares = std::any_of(its.begin(), its.end(), [&](std::int64_t atom) {
-                const auto found = linear_of_.find(atom);
-                return found != linear_of_.end() && found->second[0] < before;
-            });
-            if (shares) {
-                int dimension = 1;
-                for (std::size_t e = 0; e < there.size(); ++e)
-                    if (there[e] != 0) dimension = std::max(dimension, static_cast<int>(e % 3) + 1);
-                take_linear(std::move(its), std::move(there), dimension);
-                continue;
-            }
-            sizes.push_back(size);
-            atoms.insert(atoms.end(), its.begin(), its.end());
-            places.insert(places.end(), there.begin(), there.end());
-        }
-        found_.sizes = std::move(sizes);
-        found_.atoms = std::move(atoms);
-        found_.places = std::move(places);
-        std::vector<std::int64_t> linear;
-        for (const LinearGroup &group : found_.linear) linear.insert(linear.end(), group.atoms.begin(), group.atoms.end());
-        found_.linear_bonds = bonds_from(linear);
+        found_.linear.add({std::move(all), std::move(places), group.dimension});
     }
 
     bool is_free(std::int64_t atom) const { return bonds_of_.count(atom) && !body_of_.count(atom); }
@@ -318,9 +272,14 @@ private:
         throw bond_error(list_, Status::degenerate, bond, words);
     }
 
+    std::vector<std::int64_t> linear_atoms() const {
+        std::vector<std::int64_t> all;
+        for (const LinearGroup &group : found_.linear.all()) all.insert(all.end(), group.atoms.begin(), group.atoms.end());
+        return all;
+    }
     std::vector<std::int64_t> held_atoms() const {
-        std::vector<std::int64_t> all(found_.atoms);
-        for (const LinearGroup &group : found_.linear) all.insert(all.end(), group.atoms.begin(), group.atoms.end());
+        std::vector<std::int64_t> all = linear_atoms();
+        all.insert(all.end(), found_.atoms.begin(), found_.atoms.end());
         return all;
     }
     // All bonds that hang together with these atoms, but not through fixed atoms.
@@ -336,9 +295,7 @@ private:
                 if (reached.emplace(other, true).second) stack.push_back(other);
             };
             for (const Partner &partner : bonds_of_.at(atom)) reach(partner.atom);
-            if (const auto found = linear_of_.find(atom); found != linear_of_.end())
-                for (const std::size_t g : found->second)
-                    for (const std::int64_t other : found_.linear[g].atoms) reach(other);
+            found_.linear.for_partners(atom, reach);
         }
         for (std::int64_t k = 0; k < list_.n_bonds; ++k)
             if (!is_left_out(k) && length(k) > 0 &&
@@ -355,7 +312,6 @@ private:
     const std::vector<unsigned char> &left_out_;
     std::unordered_map<std::int64_t, std::vector<Partner>> bonds_of_;  // of atoms that can move
     std::unordered_map<std::int64_t, std::size_t> body_of_;
-    std::unordered_map<std::int64_t, std::vector<std::size_t>> linear_of_;
     Cliques found_;
 };
 

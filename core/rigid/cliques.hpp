@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/molecules/find.hpp"
-#include "core/rigid/linear.hpp"
+#include "core/rigid/linear_groups.hpp"
 
 namespace holonomic::rigid {
 
@@ -21,7 +21,7 @@ struct Cliques {
     std::vector<double> places;              // [..][3]
     std::vector<std::int64_t> bonds;         // of the list, in molecules that have one of these bodies, ascending
     std::vector<std::int64_t> shared;        // of the list, in groups that depend and share atoms with bodies
-    std::vector<LinearGroup> linear;         // on a line or in a plane, which share atoms, and bonds of length zero
+    LinearGroups linear;                     // on a line or in a plane, which share atoms, and bonds of length zero
     std::vector<std::int64_t> linear_bonds;  // of those above, in molecules with such groups, ascending
     double adjusted = 0;                     // by which part of it a body changes a length, at most
     std::int64_t adjusted_bond = -1;         // of the list

@@ -5,7 +5,7 @@
 #include <unordered_map>
 #include <unordered_set>
 
-#include "core/rigid/rank.hpp"
+#include "core/rigid/rank_of_linear.hpp"
 
 namespace holonomic::rigid {
 
@@ -116,27 +116,12 @@ std::vector<unsigned char> implied_bonds(const Masses &masses, const BondList &l
 
 std::vector<std::int64_t> implied_beside(const Linear &linear, const Masses &masses, const BondList &list,
                                          const double *lengths, std::int64_t n_lengths, const Cliques &cliques) {
-    std::unordered_map<std::int64_t, std::int64_t> column, body_of;
+    std::unordered_map<std::int64_t, std::int64_t> body_of;
     std::size_t next = 0;
     for (std::size_t b = 0; b < cliques.sizes.size(); ++b)
         for (std::int64_t a = 0; a < cliques.sizes[b]; ++a) body_of[cliques.atoms[next++]] = static_cast<std::int64_t>(b);
-    const auto column_of = [&](std::int64_t atom) {
-        return column.emplace(atom, static_cast<std::int64_t>(column.size())).first->second;
-    };
-    std::vector<std::vector<Rank::Number>> followers;
-    for (std::size_t p = 0; p < linear.parts().size(); ++p)
-        followers.push_back(Rank::followers(linear.relations()[p], linear.leaders()[p]));
-    const auto end = [&](std::int64_t atom) {
-        if (masses.fixed(atom - list.base)) return Rank::fixed(atom);
-        const Linear::Place *const place = linear.find(atom);
-        if (!place) return Rank::free(column_of(atom));
-        const std::vector<std::int32_t> &leaders = linear.leaders()[place->part].atoms;
-        std::vector<std::pair<std::int64_t, Rank::Number>> of;
-        for (std::size_t l = 0; l < leaders.size(); ++l)
-            of.emplace_back(column_of(linear.parts()[place->part][at(leaders[l])]),
-                            followers[place->part][place->atom * leaders.size() + l]);
-        return Rank::combination(std::move(of));
-    };
+    RankOfLinear rank(linear);
+    const auto is_fixed = [&](std::int64_t atom) { return masses.fixed(atom - list.base); };
     // First those that bodies hold, then those between leaders, by which the others are best told, then shorter ones.
     struct Key {
         int rank;
@@ -149,30 +134,19 @@ std::vector<std::int64_t> implied_beside(const Linear &linear, const Masses &mas
     std::vector<Key> order;
     for (const std::int64_t k : cliques.linear_bonds) {
         const std::int64_t i = list.pairs[2 * k], j = list.pairs[2 * k + 1];
-        const auto follows = [&](std::int64_t atom) {
-            const Linear::Place *const place = linear.find(atom);
-            return place && !place->leads;
-        };
         const bool within = body_of.count(i) && body_of.count(j) && body_of.at(i) == body_of.at(j);
-        order.push_back({within ? -1 : follows(i) + follows(j), lengths[k % n_lengths], k});
+        order.push_back({within ? -1 : rank.followers(i, j), lengths[k % n_lengths], k});
     }
     std::sort(order.begin(), order.end());
     std::vector<std::int64_t> found;
-    Rank rank;
     for (const Key &key : order)
-        if (rank.add(end(list.pairs[2 * key.bond]), end(list.pairs[2 * key.bond + 1])) && key.rank >= 0)
+        if (rank.add(list.pairs[2 * key.bond], list.pairs[2 * key.bond + 1], is_fixed) && key.rank >= 0)
             found.push_back(key.bond);
-    for (const std::int64_t k : found) {
-        const auto has = [](const LinearGroup &group, std::int64_t atom) {
-            return std::count(group.atoms.begin(), group.atoms.end(), atom) > 0;
-        };
-        if (std::none_of(cliques.linear.begin(), cliques.linear.end(), [&](const LinearGroup &group) {
-                return has(group, list.pairs[2 * k]) && has(group, list.pairs[2 * k + 1]);
-            }))
+    for (const std::int64_t k : found)
+        if (!cliques.linear.has_together({list.pairs[2 * k], list.pairs[2 * k + 1]}))
             throw bond_error(list, Status::degenerate, k,
                              "is one too many: the flat and straight groups and the bonds around it leave fewer freedoms "
                              "than there are bonds; hol_chains_add_rigid holds such a part by coordinates");
-    }
     return found;
 }
 

@@ -71,56 +71,70 @@ private:
 
 }  // namespace
 
-std::vector<std::size_t> base_of(const LinearGroup &group) { return Frame(group).base(); }
-
-Linear::Linear(const std::vector<LinearGroup> &groups) {
-    // Groups that hang together through atoms, by the lowest number of one.
-    std::vector<std::size_t> part_of(groups.size());
-    std::unordered_map<std::int64_t, std::size_t> first_with;
-    for (std::size_t g = 0; g < groups.size(); ++g) {
-        part_of[g] = g;
-        for (const std::int64_t atom : groups[g].atoms) {
-            const std::size_t other = part_of[first_with.emplace(atom, g).first->second], mine = part_of[g];
-            for (std::size_t h = 0; h <= g && other != mine; ++h)
-                if (part_of[h] == std::max(other, mine)) part_of[h] = std::min(other, mine);
-        }
+GroupRelations relations_of(const LinearGroup &group) {
+    const Frame frame(group);
+    GroupRelations found;
+    for (const std::size_t b : frame.base()) found.base.push_back(group.atoms[b]);
+    found.relations.push_back({group.atoms, {}});
+    for (std::size_t i = 0; i < group.atoms.size(); ++i) {
+        if (std::count(frame.base().begin(), frame.base().end(), i) > 0) continue;
+        LinearRelation one{found.base, frame.coefficients(i)};
+        one.atoms.push_back(group.atoms[i]);
+        one.c.push_back(-1);
+        found.relations.push_back(std::move(one));
     }
-    std::map<std::size_t, std::vector<std::size_t>> groups_of;
-    for (std::size_t g = 0; g < groups.size(); ++g) groups_of[part_of[g]].push_back(g);
-    for (const auto &entry : groups_of) {
-        std::vector<std::int64_t> atoms;
-        for (const std::size_t g : entry.second) atoms.insert(atoms.end(), groups[g].atoms.begin(), groups[g].atoms.end());
-        std::sort(atoms.begin(), atoms.end());
-        atoms.erase(std::unique(atoms.begin(), atoms.end()), atoms.end());
-        const auto place = [&](std::int64_t atom) {
-            return at(std::lower_bound(atoms.begin(), atoms.end(), atom) - atoms.begin());
-        };
-        Relations all;
-        all.n_atoms = static_cast<std::int32_t>(atoms.size());
-        for (const std::size_t g : entry.second) {
-            const LinearGroup &group = groups[g];
-            const Frame frame(group);
-            for (std::size_t i = 0; i < group.atoms.size(); ++i) {
-                if (std::count(frame.base().begin(), frame.base().end(), i) > 0) continue;
-                std::vector<double> row(atoms.size(), 0);
-                const std::vector<double> c = frame.coefficients(i);
-                for (std::size_t b = 0; b < c.size(); ++b) row[place(group.atoms[frame.base()[b]])] = c[b];
-                row[place(group.atoms[i])] = -1;
-                all.c.insert(all.c.end(), row.begin(), row.end());
-            }
+    return found;
+}
+
+Linear Linear::of_groups(const std::vector<LinearGroup> &groups) {
+    constexpr double same = 1e-3;  // a group on a line within a plane says what the plane says
+    std::vector<LinearRelation> all;
+    for (const LinearGroup &group : groups)
+        for (LinearRelation &one : relations_of(group).relations) all.push_back(std::move(one));
+    return Linear(all, same);
+}
+
+Linear::Linear(const std::vector<LinearRelation> &all, double least) {
+    std::unordered_map<std::int64_t, std::int64_t> parent;
+    const auto root = [&](std::int64_t atom) {
+        while (parent.at(atom) != atom) atom = parent[atom] = parent.at(parent.at(atom));
+        return atom;
+    };
+    for (const LinearRelation &one : all)
+        for (const std::int64_t atom : one.atoms) {
+            parent.emplace(atom, atom);
+            const std::int64_t a = root(atom), b = root(one.atoms[0]);
+            parent[std::max(a, b)] = std::min(a, b);
         }
-        // A group on a line within a plane says what the plane says.
-        constexpr double same = 1e-3;
-        const Leaders leaders = leaders_of(all, same);
+    std::map<std::int64_t, std::vector<std::int64_t>> atoms_of, relations_of_part;
+    for (const auto &entry : parent) atoms_of[root(entry.first)].push_back(entry.first);
+    for (std::size_t k = 0; k < all.size(); ++k)
+        if (!all[k].c.empty()) relations_of_part[root(all[k].atoms[0])].push_back(static_cast<std::int64_t>(k));
+    for (auto &entry : atoms_of) {
+        std::vector<std::int64_t> &atoms = entry.second;
+        std::sort(atoms.begin(), atoms.end());
+        const std::vector<std::int64_t> &its = relations_of_part[entry.first];
+        Relations given;
+        given.n_atoms = static_cast<std::int32_t>(atoms.size());
+        for (const std::int64_t k : its) {
+            std::vector<double> row(atoms.size(), 0);
+            for (std::size_t i = 0; i < all[at(k)].atoms.size(); ++i)
+                row[at(std::lower_bound(atoms.begin(), atoms.end(), all[at(k)].atoms[i]) - atoms.begin())] +=
+                    all[at(k)].c[i];
+            given.c.insert(given.c.end(), row.begin(), row.end());
+        }
+        Leaders leaders = leaders_of(given, least);
         Relations kept;
-        kept.n_atoms = all.n_atoms;
-        for (std::int32_t k = 0; k < all.count(); ++k)
+        kept.n_atoms = given.n_atoms;
+        for (std::int32_t k = 0; k < given.count(); ++k)
             if (std::count(leaders.left_out.begin(), leaders.left_out.end(), k) == 0)
-                kept.c.insert(kept.c.end(), all.row(k), all.row(k) + all.n_atoms);
+                kept.c.insert(kept.c.end(), given.row(k), given.row(k) + given.n_atoms);
+        if (!leaders.left_out.empty()) left_out_ = its[at(leaders.left_out[0])];
         for (std::size_t i = 0; i < atoms.size(); ++i)
             place_of_[atoms[i]] = {parts_.size(), i,
-                                   std::count(leaders.atoms.begin(), leaders.atoms.end(), static_cast<std::int32_t>(i)) > 0};
-        leaders_.push_back(leaders);
+                                   std::binary_search(leaders.atoms.begin(), leaders.atoms.end(),
+                                                      static_cast<std::int32_t>(i))};
+        leaders_.push_back(std::move(leaders));
         parts_.push_back(std::move(atoms));
         relations_.push_back(std::move(kept));
     }

@@ -27,12 +27,27 @@ struct LooseParts {
     std::vector<Loose> loose;
     std::vector<Distance> hidden;
     std::vector<std::pair<std::int64_t, std::int64_t>> links;
+    std::vector<std::int64_t> held;  // bonds that bodies hold which are loose parts now, ascending
 };
 
-// What holds together of groups. Atoms are any numbers.
+// sum c_i r_i = 0. Without coefficients: these atoms are of one part.
+struct LinearRelation {
+    std::vector<std::int64_t> atoms;
+    std::vector<double> c;
+};
+// Of the atoms of a group, by d + 1 of them that are far from each other, and from a line and a plane; those first.
+struct GroupRelations {
+    std::vector<std::int64_t> base;
+    std::vector<LinearRelation> relations;
+};
+GroupRelations relations_of(const LinearGroup &group);
+
+// What hangs together through atoms. Atoms are any numbers.
 class Linear {
 public:
-    explicit Linear(const std::vector<LinearGroup> &groups);
+    // least: as in leaders_of.
+    Linear(const std::vector<LinearRelation> &all, double least);
+    static Linear of_groups(const std::vector<LinearGroup> &groups);
 
     const std::vector<std::vector<std::int64_t>> &parts() const { return parts_; }  // atoms of each
     const std::vector<Relations> &relations() const { return relations_; }          // of each
@@ -47,14 +62,25 @@ public:
         return found == place_of_.end() ? nullptr : &found->second;
     }
 
+    std::int64_t left_out() const { return left_out_; }  // a relation that others imply; -1
+
 private:
     std::vector<std::vector<std::int64_t>> parts_;
     std::vector<Relations> relations_;
     std::vector<Leaders> leaders_;
     std::unordered_map<std::int64_t, Place> place_of_;
+    std::int64_t left_out_ = -1;
 };
 
-// d + 1 atoms of a group that are far from each other, and far from a line and a plane.
-std::vector<std::size_t> base_of(const LinearGroup &group);
+// Bodies as they are given, of which some share atoms: these as loose parts, behind the others, with the distances of
+// their bases. Throws Error, naming the atoms, where two bodies have two atoms at different distances.
+struct JoinedBodies {
+    std::vector<std::int64_t> sizes, atoms;
+    std::vector<double> places;
+    LooseParts parts;
+};
+bool share_atoms(std::int64_t n_bodies, const std::int64_t *sizes, const std::int64_t *atoms);
+JoinedBodies join_bodies(std::int64_t n_bodies, const std::int64_t *sizes, const std::int64_t *atoms,
+                         const double *places, std::int64_t n_bonds, const std::int64_t *pairs, const double *lengths);
 
 }  // namespace holonomic::rigid

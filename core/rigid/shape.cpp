@@ -103,6 +103,7 @@ private:
     void make_rows() {
         for (std::size_t k = 0; k < s_.bonds.size(); ++k) {
             Bond &bond = s_.bonds[k];
+            if (bond.row == held_elsewhere) continue;
             bond.row = -1;
             if (is_within_body(bond)) {
                 check_within(bond, static_cast<std::int32_t>(k));

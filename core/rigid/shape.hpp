@@ -22,6 +22,9 @@ struct Part {
 // A bond's length and the distance between its atoms in a body that was given by places: equal to what digits allow.
 constexpr double same_length = 1e-6;
 
+// Row of a bond that is none, as a loose part holds it by other distances.
+constexpr std::int32_t held_elsewhere = -2;
+
 // A bond as it was given, of atoms numbered within the molecule.
 struct Bond {
     std::int32_t i, j;

@@ -219,7 +219,8 @@ private:
                 fixed[m].emplace(atom, append(given, atom));
                 *next++ = fixed[m].at(atom);
             }
-            given.bonds.push_back({ends[0], ends[1], lengths[k], -1});
+            const bool held = parts_ && std::binary_search(parts_->held.begin(), parts_->held.end(), k);
+            given.bonds.push_back({ends[0], ends[1], lengths[k], held ? rigid::held_elsewhere : -1});
             given.bond_numbers.push_back(chains_.n_bonds() + k);
         }
     }
@@ -264,6 +265,12 @@ std::vector<rigid::Given> Chains::sort_rigid(std::int64_t n_bodies, const std::i
                                              const std::int64_t *atoms, std::int64_t offset, const double *places,
                                              std::int64_t n_bonds, const std::int64_t *pairs, const double *lengths,
                                              const rigid::LooseParts *parts) const {
+    if (!parts && rigid::share_atoms(n_bodies, sizes, atoms)) {
+        const rigid::JoinedBodies joined =
+            rigid::join_bodies(n_bodies, sizes, atoms, places, n_bonds, pairs, lengths);
+        return sort_rigid(static_cast<std::int64_t>(joined.sizes.size()), joined.sizes.data(), joined.atoms.data(),
+                          offset, joined.places.data(), n_bonds, pairs, lengths, &joined.parts);
+    }
     return Sorting(*this, masses_, use_, n_bodies, sizes, atoms, offset, n_bonds, pairs, parts).sort(places, lengths);
 }
 

@@ -200,7 +200,10 @@ static void crude(hol_chains *both, const double *r)
 {
     double moved[21], length[6], rate[6], v[21] = {0}, error = -1;
     unsigned char implied[6] = {7};
+    const double middle[3] = {0.5, 0.5, -1};
+    const int64_t three = 3, site[3] = {0, 1, 2};
     int64_t bond = 7;
+    hol_chains *relations;
     int status[2] = {-1, -1}, iterations[2] = {-1, -1}, k;
     hol_report report;
     const hol_view positions = view_of(moved), rates = view_of(v);
@@ -215,6 +218,10 @@ static void crude(hol_chains *both, const double *r)
     NEAR(rate[3], 3);
     SUCCEEDS(hol_chains_set_memory_limit(both, 1 << 20));
     SUCCEEDS(hol_chains_set_length_tolerance(both, 1e-3));
+    SUCCEEDS(hol_chains_create(3, mass + 1, &relations));
+    SUCCEEDS(hol_chains_add_linear(relations, 1, &three, site, middle, 0, NULL, NULL));
+    EXPECT(hol_chains_degrees_of_freedom(relations, 3) == 6);
+    hol_chains_destroy(relations);
     SUCCEEDS(hol_chains_adjustment(both, &error, &bond));
     EXPECT(error == 0 && bond == -1);
     SUCCEEDS(hol_chains_implied(both, implied));

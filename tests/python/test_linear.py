@@ -1,6 +1,7 @@
 """Flat and straight groups that share atoms, and atoms that are one point, against singular values of all rows."""
 
 import itertools
+import pickle
 import unittest
 
 import numpy as np
@@ -178,6 +179,127 @@ class Linear(unittest.TestCase):
                         molecules.impose(start)
                         np.testing.assert_allclose(start, r, atol=30 * 10.0**-decimals)
                         self.check(molecules, start, its_masses, pairs, relations(start, its), freedoms)
+
+    def test_bodies_that_share_atoms(self):
+        """Two tetrahedra with a common corner; two plates with a common edge; a chain of straight ones; all in one set."""
+        rng = np.random.default_rng(9)
+        corners = np.array([[1.0, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]])
+        square = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1.2, 0], [0, 1.1, 0], [0.4, 0.5, 0]])
+        cases = [
+            # atoms of bodies, positions, freedoms, and how many atoms are the base of a body
+            ([(0, 1, 2, 3), (0, 4, 5, 6)], np.r_[corners, -corners[1:] + 2 * corners[0]], 9),
+            ([(0, 1, 2, 3, 4), (0, 1, 5, 6)], np.r_[square, square[2:4] @ about(np.array([1.0, 0, 0]), 1.0).T], 7),
+            ([(0, 1, 2), (2, 3, 4), (4, 5, 6)],
+             np.cumsum(np.r_[[[0, 0, 0]], np.repeat([[1.0, 0, 0], [0.3, 1, 0], [0.2, 0.1, 1]], 2, axis=0)], axis=0), 9),
+        ]
+        for bodies, r, freedoms in cases:
+            r = r @ np.linalg.qr(rng.normal(size=(3, 3)))[0]
+            masses = rng.uniform(1, 9, len(r))
+            pairs = sorted({tuple(sorted(pair)) for body in bodies for pair in itertools.combinations(body, 2)})
+            molecules = hol.Molecules(masses)
+            molecules.add_rigid(bodies, [r[list(body)] for body in bodies])
+            with self.subTest(bodies=bodies):
+                rows = relations(r, [body for body in bodies if len(body) != 4 or bodies[0] != (0, 1, 2, 3)])
+                self.check(molecules, r, masses, pairs, rows, freedoms)
+
+    def test_a_bond_within_a_body_that_shares_an_atom(self):
+        r = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [-1, 0, 0.2], [0, -1, 0.1]])
+        bodies, places = [(0, 1, 2, 3), (0, 4, 5)], None
+        places = [r[list(body)] for body in bodies]
+        molecules = hol.Molecules(np.ones(6))
+        molecules.add_rigid(bodies, places, [(0, 1)], [1.0])
+        force = molecules.forces(r, None, np.arange(18.0).reshape(6, 3))
+        self.assertEqual(force.lambda_[0], 0)
+        np.testing.assert_allclose(force.forces.sum(axis=0), 0, atol=1e-13)
+        other = hol.Molecules(np.ones(6))
+        with self.assertRaisesRegex(hol.Error, "lies within a body"):
+            other.add_rigid(bodies, places, [(0, 1)], [1.1])
+        places[1] = places[1] * 2
+        bodies[1] = (0, 1, 5)
+        with self.assertRaisesRegex(hol.Error, "in two bodies"):
+            other.add_rigid(bodies, places)
+
+    def test_bonds_of_length_zero(self):
+        """Two chains that have a point in common, and a triangle on it."""
+        rng = np.random.default_rng(10)
+        r = np.array([[0.0, 0, 0], [1, 0, 0], [1.5, 0.8, 0], [1.5, 0.8, 0], [2.4, 1, 0.3], [3, 0.2, 0.4], [2.0, 1.7, 0.3]])
+        r = r @ np.linalg.qr(rng.normal(size=(3, 3)))[0]
+        masses = rng.uniform(1, 9, 7)
+        pairs = [(0, 1), (1, 2), (3, 4), (4, 5), (4, 6), (3, 6)]
+        lengths = [np.linalg.norm(r[j] - r[i]) for i, j in pairs]
+        row = np.array([0.0, 0, 1, -1, 0, 0, 0])
+        molecules = hol.Molecules(masses)
+        molecules.add(pairs[:2] + [(2, 3)] + pairs[2:], lengths[:2] + [0.0] + lengths[2:])
+        self.assertEqual(molecules.implied().tolist(), [k == 2 for k in range(7)])
+        self.check(molecules, r, masses, pairs, [row], 21 - 6 - 3)
+        molecules.set_lengths(lengths[:2] + [0.0] + lengths[2:])
+        with self.assertRaisesRegex(hol.Error, "held fixed"):
+            hol.Molecules([1.0, 0.0]).add([(0, 1)], 0.0)
+
+    def test_relations(self):
+        """Centres of mass of two flexible groups, a site between two atoms, a massless one, and bonds."""
+        rng = np.random.default_rng(11)
+        masses = np.array([1.0, 2, 3, 1, 1, 2])
+        r = rng.normal(size=(6, 3))
+        row = np.r_[masses[:3] / 6, -masses[3:] / 4]
+        r[3:] += r[:3].T @ row[:3] + r[3:].T @ row[3:]
+        pairs = [(0, 1), (1, 2), (3, 4), (4, 5)]
+        molecules = hol.Molecules(masses)
+        molecules.add_linear([range(6)], [row], pairs, [np.linalg.norm(r[j] - r[i]) for i, j in pairs])
+        self.check(molecules, r, masses, pairs, [row], 18 - 4 - 3)
+
+        r = rng.normal(size=(4, 3))
+        r[2] = 0.3 * r[0] + 0.7 * r[1]
+        rows = [[0.3, 0.7, -1, 0]]
+        molecules = hol.Molecules([1.0, 2, 5, 3])
+        molecules.add_linear([[0, 1, 2]], [rows[0][:3]], [(0, 1), (2, 3)],
+                             [np.linalg.norm(r[1] - r[0]), np.linalg.norm(r[3] - r[2])])
+        self.check(molecules, r, [1.0, 2, 5, 3], [(0, 1), (2, 3)], np.array(rows), 12 - 2 - 3)
+
+        # a massless site of three flexible atoms: its force goes to them
+        site, f = np.array([0.2, 0.3, 0.5]), rng.normal(size=(4, 3))
+        r = rng.normal(size=(4, 3))
+        r[3] = site @ r[:3]
+        molecules = hol.Molecules([1.0, 2, 3, 0])
+        molecules.add_linear([[0, 1, 2, 3]], [[*site, -1]])
+        np.testing.assert_allclose(molecules.forces(r, None, f).forces, np.r_[np.outer(site, f[3]), [-f[3]]], atol=1e-14)
+        self.assertEqual(molecules.degrees_of_freedom(), 9)
+        moved = r + rng.normal(size=r.shape)
+        molecules.project_positions(r, moved, 1.0)
+        np.testing.assert_allclose(site @ moved[:3], moved[3], atol=1e-14)
+
+    def test_relations_that_cannot_be(self):
+        molecules = hol.Molecules([1.0, 2, 3, 0, np.inf])
+        for atoms, c, words in (([[0, 1]], [[1.0, 1.0]], "add up to 0"), ([[0, 1]], [[0.0, 0.0]], "but zeros"),
+                                ([[0, 1]], [[np.nan, 0.0]], "not finite"), ([[0, 7]], [[1.0, -1.0]], "outside"),
+                                ([[0, 1], [1, 0]], [[1.0, -1], [2, -2]], "follows from the others"),
+                                ([[0, 4]], [[1.0, -1.0]], "infinite mass"), ([[0]], [[0.0]], "fewer than two")):
+            with self.assertRaisesRegex(hol.Error, words):
+                molecules.add_linear(atoms, c)
+        self.assertEqual(molecules.n_bonds, 0)
+        molecules.add_linear([[0, 1]], [[1.0, -1.0]])
+        with self.assertRaisesRegex(hol.Error, "earlier call"):
+            molecules.add_linear([[1, 2]], [[1.0, -1.0]])
+
+    def test_copies_masses_and_boxes(self):
+        rng = np.random.default_rng(12)
+        z, masses, bonds, groups, freedoms = guanidinium(rng)
+        r = grow(z, None, None, None)
+        pairs = with_angles(bonds)
+        lengths = [np.linalg.norm(r[j] - r[i]) for i, j in pairs]
+        molecules = hol.Molecules(masses)
+        molecules.add(pairs, np.round(lengths, 6))
+        molecules.set_masses(np.array(masses) * 2)
+        molecules.impose(r)
+        again = pickle.loads(pickle.dumps(molecules))
+        f = rng.normal(size=r.shape)
+        np.testing.assert_array_equal(again.forces(r, None, f).forces, molecules.forces(r, None, f).forces)
+        box = np.diag([4.2, 5, 6])  # smaller than the molecule, and cut by it
+        molecules.box = box
+        wrapped = r - np.floor(r / np.diag(box)) * np.diag(box)
+        np.testing.assert_allclose(molecules.forces(wrapped, None, f).forces, again.forces(r, None, f).forces, atol=1e-12)
+        with self.assertRaises(hol.Error):
+            molecules.set_lengths(np.array(lengths) * 1.01)
 
 
 if __name__ == "__main__":
