@@ -280,8 +280,8 @@ HOL_API int hol_chains_add_rigid_molecules(hol_chains *chains, int64_t n_molecul
                                            const double *lengths);
 
 /**
- * Adds linear relations among atoms, sum_i c_i r_i = 0 with constant c_i, and bonds of the molecules in which these are:
- * a site by its base and coefficients (r_s = a r_1 + b r_2 + ..), atoms that are one point (1, -1), centroids and
+ * Adds linear relations among atoms, sum_i c_i r_i = 0 with constant c_i, and bonds of the molecules in which these
+ * are: a site by its base and coefficients (r_s = a r_1 + b r_2 + ..), atoms that are one point (1, -1), centroids and
  * centres of mass of flexible groups that coincide. A relation is three equations, which have no coordinates in them:
  * motions, forces and velocities that it forbids are taken away to rounding. docs/rigid.md.
  * @param[in,out] chains
@@ -299,8 +299,8 @@ HOL_API int hol_chains_add_rigid_molecules(hol_chains *chains, int64_t n_molecul
  * numbered and treated as those with bodies (hol_chains_add_rigid): G has all of the force, multipliers are those of
  * bonds; each relation takes three degrees of freedom. The work grows with the third power of the atoms of a molecule
  * that hang together by relations.
- * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (sizes, coefficients, a relation that follows from the others, masses of 0
- *         whose places do not follow from others, a length, a bond in no molecule with a relation); HOL_ERR_INDEX;
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (sizes, coefficients, a relation that follows from the others, masses of
+ * 0 whose places do not follow from others, a length, a bond in no molecule with a relation); HOL_ERR_INDEX;
  *         HOL_ERR_SHARED_ATOM (an atom of an earlier call); HOL_ERR_DEGENERATE; HOL_ERR_MEMORY. On an error nothing is
  *         added. Not thread-safe on one handle. Since 0.2.
  */

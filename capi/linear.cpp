@@ -13,7 +13,8 @@ int hol_chains_add_linear(hol_chains *chains, int64_t n_relations, const int64_t
         need(atoms, "atoms");
         need(coefficients, "coefficients");
         if (n_bonds < 0 || n_bonds > int64_t{1} << 30)
-            throw make_error(Status::value, "n_bonds is %lld; it must be in 0 .. 2^30", static_cast<long long>(n_bonds));
+            throw make_error(Status::value, "n_bonds is %lld; it must be in 0 .. 2^30",
+                             static_cast<long long>(n_bonds));
         if (n_bonds > 0) {
             need(pairs, "pairs");
             need(lengths, "lengths");

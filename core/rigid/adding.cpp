@@ -218,10 +218,10 @@ void Chains::add_with_bodies(const BondList &list, const double *lengths, std::i
         batch.commit();
         return note();
     }
-    std::vector<rigid::Given> molecules = sort_rigid(
-        static_cast<std::int64_t>(cliques.sizes.size()), cliques.sizes.data(), cliques.atoms.data(), 0,
-        cliques.places.data(), static_cast<std::int64_t>(its_lengths.size()), pairs.data(), its_lengths.data(),
-        parts.loose.empty() ? nullptr : &parts);
+    std::vector<rigid::Given> molecules =
+        sort_rigid(static_cast<std::int64_t>(cliques.sizes.size()), cliques.sizes.data(), cliques.atoms.data(), 0,
+                   cliques.places.data(), static_cast<std::int64_t>(its_lengths.size()), pairs.data(),
+                   its_lengths.data(), parts.loose.empty() ? nullptr : &parts);
     for (rigid::Given &given : molecules) {
         given.by_lengths = true;
         for (std::int64_t &bond : given.bond_numbers) bond = n_bonds_ + of_bodies[at(bond - n_bonds_)];

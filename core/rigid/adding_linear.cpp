@@ -1,4 +1,5 @@
-// Adding linear relations: those that are given, with bonds of their molecules, and those that a list of distances means.
+// Adding linear relations: those that are given, with bonds of their molecules, and those that a list of distances
+// means.
 #include <algorithm>
 #include <cmath>
 

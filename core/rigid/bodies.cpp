@@ -79,7 +79,8 @@ std::int32_t Bodies::find_body(std::int32_t n, const double *masses, const doubl
     for (auto found = range.first; found != range.second; ++found) {
         const Body &body = kinds_[at(found->second)];
         if (body.n_atoms == n && same_words(body.masses.data(), masses, at(n)) &&
-            same_words(body.place.data(), place, 3 * at(n)) && body.is_rigid == is_rigid && body.relations.c.size() == relations.c.size() &&
+            same_words(body.place.data(), place, 3 * at(n)) && body.is_rigid == is_rigid &&
+            body.relations.c.size() == relations.c.size() &&
             same_words(body.relations.c.data(), relations.c.data(), relations.c.size()) &&
             (is_rigid || body.extent == loose->extent))
             return found->second;

@@ -274,7 +274,8 @@ private:
 
     std::vector<std::int64_t> linear_atoms() const {
         std::vector<std::int64_t> all;
-        for (const LinearGroup &group : found_.linear.all()) all.insert(all.end(), group.atoms.begin(), group.atoms.end());
+        for (const LinearGroup &group : found_.linear.all())
+            all.insert(all.end(), group.atoms.begin(), group.atoms.end());
         return all;
     }
     std::vector<std::int64_t> held_atoms() const {

@@ -208,8 +208,7 @@ Decimals::Decimals(const Distances &wanted, double tolerance)
     if (of_places >= 0 && wanted.n < 5 && are_flat_on_grid(wanted, of_places)) of_places = -1;
     // Fewer than three are a round number, not a rounded one.
     if (of_lengths >= 0) open_ = std::max(open_, std::pow(10.0, -std::max(of_lengths, 3)) / least);
-    if (of_places >= 0)
-        open_ = std::max(open_, 2 * std::pow(10.0, -2 * std::max(of_places, 3)) / (least * least));
+    if (of_places >= 0) open_ = std::max(open_, 2 * std::pow(10.0, -2 * std::max(of_places, 3)) / (least * least));
     are_full_ = of_lengths < 0 && of_places < 0;
     if (are_full_ && wanted.n < 5) highest_ = of_heights(wanted);
     if (tolerance > 0) most_ = std::max(tolerance, std::min(open_, 10 * tolerance));

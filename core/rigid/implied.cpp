@@ -119,7 +119,8 @@ std::vector<std::int64_t> implied_beside(const Linear &linear, const Masses &mas
     std::unordered_map<std::int64_t, std::int64_t> body_of;
     std::size_t next = 0;
     for (std::size_t b = 0; b < cliques.sizes.size(); ++b)
-        for (std::int64_t a = 0; a < cliques.sizes[b]; ++a) body_of[cliques.atoms[next++]] = static_cast<std::int64_t>(b);
+        for (std::int64_t a = 0; a < cliques.sizes[b]; ++a)
+            body_of[cliques.atoms[next++]] = static_cast<std::int64_t>(b);
     RankOfLinear rank(linear);
     const auto is_fixed = [&](std::int64_t atom) { return masses.fixed(atom - list.base); };
     // First those that bodies hold, then those between leaders, by which the others are best told, then shorter ones.
@@ -144,9 +145,10 @@ std::vector<std::int64_t> implied_beside(const Linear &linear, const Masses &mas
             found.push_back(key.bond);
     for (const std::int64_t k : found)
         if (!cliques.linear.has_together({list.pairs[2 * k], list.pairs[2 * k + 1]}))
-            throw bond_error(list, Status::degenerate, k,
-                             "is one too many: the flat and straight groups and the bonds around it leave fewer freedoms "
-                             "than there are bonds; hol_chains_add_rigid holds such a part by coordinates");
+            throw bond_error(
+                list, Status::degenerate, k,
+                "is one too many: the flat and straight groups and the bonds around it leave fewer freedoms "
+                "than there are bonds; hol_chains_add_rigid holds such a part by coordinates");
     return found;
 }
 

@@ -127,9 +127,9 @@ private:
             };
             for (std::size_t a = 0; a < base.size(); ++a)
                 for (std::size_t b = 0; b < a; ++b)
-                    all.emplace_back(rank.followers(base[a], base[b]), all.size(),
-                                     LooseParts::Distance{base[b], base[a],
-                                                          distance(group, place(base[a]), place(base[b]))});
+                    all.emplace_back(
+                        rank.followers(base[a], base[b]), all.size(),
+                        LooseParts::Distance{base[b], base[a], distance(group, place(base[a]), place(base[b]))});
             Body body;
             body.n_atoms = static_cast<std::int32_t>(group.atoms.size());
             body.place = group.places;
@@ -177,7 +177,8 @@ JoinedBodies join_bodies(std::int64_t n_bodies, const std::int64_t *sizes, const
             throw make_error(Status::value,
                              "the bond between atoms %lld and %lld has the length %g but lies within a body, whose "
                              "atoms are at another distance",
-                             static_cast<long long>(pairs[2 * k]), static_cast<long long>(pairs[2 * k + 1]), lengths[k]);
+                             static_cast<long long>(pairs[2 * k]), static_cast<long long>(pairs[2 * k + 1]),
+                             lengths[k]);
         held.push_back(k);
     }
     JoinedBodies joined = joining.run();

@@ -48,7 +48,8 @@ private:
     void go_on() {
         std::size_t next = 0;
         const auto size = [&](std::size_t i) {
-            return left_[3 * i] * left_[3 * i] + left_[3 * i + 1] * left_[3 * i + 1] + left_[3 * i + 2] * left_[3 * i + 2];
+            return left_[3 * i] * left_[3 * i] + left_[3 * i + 1] * left_[3 * i + 1] +
+                   left_[3 * i + 2] * left_[3 * i + 2];
         };
         for (std::size_t i = 0; i < n_; ++i)
             if (size(i) > size(next)) next = i;
@@ -131,9 +132,9 @@ Linear::Linear(const std::vector<LinearRelation> &all, double least) {
                 kept.c.insert(kept.c.end(), given.row(k), given.row(k) + given.n_atoms);
         if (!leaders.left_out.empty()) left_out_ = its[at(leaders.left_out[0])];
         for (std::size_t i = 0; i < atoms.size(); ++i)
-            place_of_[atoms[i]] = {parts_.size(), i,
-                                   std::binary_search(leaders.atoms.begin(), leaders.atoms.end(),
-                                                      static_cast<std::int32_t>(i))};
+            place_of_[atoms[i]] = {
+                parts_.size(), i,
+                std::binary_search(leaders.atoms.begin(), leaders.atoms.end(), static_cast<std::int32_t>(i))};
         leaders_.push_back(std::move(leaders));
         parts_.push_back(std::move(atoms));
         relations_.push_back(std::move(kept));

@@ -1,5 +1,5 @@
-// Groups of atoms on a line or in a plane that share atoms, bodies that share atoms, and bonds of length zero: as linear
-// relations, with the distances that they leave.
+// Groups of atoms on a line or in a plane that share atoms, bodies that share atoms, and bonds of length zero: as
+// linear relations, with the distances that they leave.
 #pragma once
 
 #include <cstdint>

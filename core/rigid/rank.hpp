@@ -22,8 +22,12 @@ public:
         std::vector<std::pair<std::int64_t, Number>> of;
         Number place[3];
     };
-    static End free(std::int64_t column) { return {{{column, 1}}, {place(column, 0), place(column, 1), place(column, 2)}}; }
-    static End fixed(std::int64_t atom) { return {{}, {place(-1 - atom, 0), place(-1 - atom, 1), place(-1 - atom, 2)}}; }
+    static End free(std::int64_t column) {
+        return {{{column, 1}}, {place(column, 0), place(column, 1), place(column, 2)}};
+    }
+    static End fixed(std::int64_t atom) {
+        return {{}, {place(-1 - atom, 0), place(-1 - atom, 1), place(-1 - atom, 2)}};
+    }
     // A point with coefficients of free ones.
     static End combination(std::vector<std::pair<std::int64_t, Number>> of) {
         End end{std::move(of), {0, 0, 0}};
@@ -72,7 +76,8 @@ public:
         for (int x = 0; x < 3; ++x) {
             const Number d = minus(j.place[x], i.place[x]);
             for (const auto &[column, c] : i.of) row[3 * column + x] = minus(row[3 * column + x], times(c, d));
-            for (const auto &[column, c] : j.of) row[3 * column + x] = minus(row[3 * column + x], times(minus(0, c), d));
+            for (const auto &[column, c] : j.of)
+                row[3 * column + x] = minus(row[3 * column + x], times(minus(0, c), d));
         }
         while (!row.empty()) {
             const auto first = row.begin();

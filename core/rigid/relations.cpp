@@ -40,8 +40,7 @@ public:
             if (row_of_[at(i)] < 0) found.atoms.push_back(i);
         for (std::int32_t i = 0; i < n_; ++i)
             for (const std::int32_t leader : found.atoms)
-                found.of.push_back(row_of_[at(i)] < 0 ? as_pair(i == leader)
-                                                      : -rows_[at(row_of_[at(i)])][at(leader)]);
+                found.of.push_back(row_of_[at(i)] < 0 ? as_pair(i == leader) : -rows_[at(row_of_[at(i)])][at(leader)]);
         return found;
     }
 

@@ -20,8 +20,8 @@ struct Relations {
 
 // Atoms that the others follow: r_i = sum_l of[i][l] r_leader[l].
 struct Leaders {
-    std::vector<std::int32_t> atoms;    // ascending
-    std::vector<DoublePair> of;         // [n_atoms][atoms]
+    std::vector<std::int32_t> atoms;     // ascending
+    std::vector<DoublePair> of;          // [n_atoms][atoms]
     std::vector<std::int32_t> left_out;  // relations that the others imply, to `least`
 };
 

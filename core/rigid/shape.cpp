@@ -82,11 +82,7 @@ private:
     }
 
     void add_distance(const Bond &bond, std::int32_t number) {
-        Row row{{},
-                number,
-                as_pair(bond.length) * as_pair(bond.length),
-                bond.length * bond.length,
-                bond.length};
+        Row row{{}, number, as_pair(bond.length) * as_pair(bond.length), bond.length * bond.length, bond.length};
         add_end(bond.j, 1, row.entries);
         add_end(bond.i, -1, row.entries);
         if (are_of_one_part(bond)) {  // of a loose one: each node once

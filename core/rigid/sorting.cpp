@@ -53,7 +53,8 @@ public:
             const std::int64_t *sizes, const std::int64_t *atoms, std::int64_t offset, std::int64_t n_bonds,
             const std::int64_t *pairs, const rigid::LooseParts *parts)
         : chains_(chains), masses_(masses), use_(use), base_(chains.base), n_bodies_(n_bodies), n_bonds_(n_bonds),
-          offset_(offset), sizes_(sizes), given_atoms_(atoms), given_pairs_(pairs), parts_(parts), joined_(at(n_bodies)) {}
+          offset_(offset), sizes_(sizes), given_atoms_(atoms), given_pairs_(pairs), parts_(parts),
+          joined_(at(n_bodies)) {}
 
     std::vector<rigid::Given> sort(const double *places, const double *lengths) {
         take_bodies();
@@ -236,7 +237,8 @@ private:
         }
         for (const auto &link : parts_->links) {
             const std::int32_t i = local(link.first), j = local(link.second);
-            if (i >= 0 && j >= 0) molecules_[at(molecule_of_atom(link.first - base_ + offset_))].links.push_back({i, j});
+            if (i >= 0 && j >= 0)
+                molecules_[at(molecule_of_atom(link.first - base_ + offset_))].links.push_back({i, j});
         }
         for (rigid::Given &given : molecules_)
             if (std::all_of(given.loose.begin(), given.loose.end(), [](const auto &loose) { return loose.is_rigid(); }))
@@ -266,8 +268,7 @@ std::vector<rigid::Given> Chains::sort_rigid(std::int64_t n_bodies, const std::i
                                              std::int64_t n_bonds, const std::int64_t *pairs, const double *lengths,
                                              const rigid::LooseParts *parts) const {
     if (!parts && rigid::share_atoms(n_bodies, sizes, atoms)) {
-        const rigid::JoinedBodies joined =
-            rigid::join_bodies(n_bodies, sizes, atoms, places, n_bonds, pairs, lengths);
+        const rigid::JoinedBodies joined = rigid::join_bodies(n_bodies, sizes, atoms, places, n_bonds, pairs, lengths);
         return sort_rigid(static_cast<std::int64_t>(joined.sizes.size()), joined.sizes.data(), joined.atoms.data(),
                           offset, joined.places.data(), n_bonds, pairs, lengths, &joined.parts);
     }
