@@ -212,6 +212,15 @@ int hol_chains_set_tolerance(hol_chains *chains, double tolerance) {
     });
 }
 
+int hol_chains_set_length_tolerance(hol_chains *chains, double tolerance) {
+    return guarded(__func__, [&] {
+        need(chains, "chains");
+        if (!(tolerance >= 0 && tolerance <= 0.01))
+            throw make_error(Status::value, "the tolerance of lengths is %g; it must be in 0 .. 0.01", tolerance);
+        chains->chains.length_tolerance = tolerance;
+    });
+}
+
 int hol_chains_set_memory_limit(hol_chains *chains, int64_t bytes) {
     return guarded(__func__, [&] {
         need(chains, "chains");

@@ -136,3 +136,22 @@ int64_t hol_chains_degrees_of_freedom(const hol_chains *chains, int dimensions) 
 }
 
 int64_t hol_chains_memory(const hol_chains *chains) { return chains ? chains->chains.memory() : 0; }
+
+int hol_chains_adjustment(const hol_chains *chains, double *largest, int64_t *bond) {
+    return guarded(__func__, [&] {
+        need(chains, "chains");
+        need(largest, "largest");
+        const holonomic::Chains::Adjustment &found = chains->chains.adjustment();
+        *largest = found.largest;
+        if (bond) *bond = found.bond < 0 ? -1 : found.bond + chains->chains.base;
+    });
+}
+
+int hol_chains_implied(const hol_chains *chains, unsigned char *implied) {
+    return guarded(__func__, [&] {
+        need(chains, "chains");
+        need(implied, "implied");
+        std::fill(implied, implied + chains->chains.n_bonds(), static_cast<unsigned char>(0));
+        for (const std::int64_t bond : chains->chains.implied()) implied[bond] = 1;
+    });
+}

@@ -1,7 +1,7 @@
 ! The part of the C interface that says what is bonded and how it is treated; use the module holonomic_c, which has all
 ! parts.
 module holonomic_c_molecules
-   use, intrinsic :: iso_c_binding, only: c_double, c_int, c_int64_t, c_ptr
+   use, intrinsic :: iso_c_binding, only: c_double, c_int, c_int64_t, c_ptr, c_signed_char
    implicit none
    public
    private :: c_double, c_int, c_int64_t, c_ptr
@@ -78,6 +78,17 @@ module holonomic_c_molecules
          type(c_ptr), value :: chains
          integer(c_int64_t), value :: n_molecules, n_atoms, first_atom, n_bodies
          type(c_ptr), value :: sizes, atoms, places
+         integer(c_int64_t), value :: n_bonds
+         type(c_ptr), value :: pairs, lengths
+         integer(c_int) :: status
+      end function
+
+      function hol_chains_add_linear(chains, n_relations, sizes, atoms, coefficients, n_bonds, pairs, lengths) bind(c) &
+         result(status)
+         import :: c_int, c_int64_t, c_ptr
+         type(c_ptr), value :: chains
+         integer(c_int64_t), value :: n_relations
+         type(c_ptr), value :: sizes, atoms, coefficients
          integer(c_int64_t), value :: n_bonds
          type(c_ptr), value :: pairs, lengths
          integer(c_int) :: status
@@ -177,6 +188,28 @@ module holonomic_c_molecules
          import :: c_double, c_int, c_ptr
          type(c_ptr), value :: chains
          real(c_double), value :: tolerance
+         integer(c_int) :: status
+      end function
+
+      function hol_chains_set_length_tolerance(chains, tolerance) bind(c) result(status)
+         import :: c_double, c_int, c_ptr
+         type(c_ptr), value :: chains
+         real(c_double), value :: tolerance
+         integer(c_int) :: status
+      end function
+
+      function hol_chains_adjustment(chains, largest, bond) bind(c) result(status)
+         import :: c_double, c_int, c_int64_t, c_ptr
+         type(c_ptr), value :: chains
+         real(c_double), intent(out) :: largest
+         integer(c_int64_t), intent(out) :: bond
+         integer(c_int) :: status
+      end function
+
+      function hol_chains_implied(chains, implied) bind(c) result(status)
+         import :: c_int, c_ptr, c_signed_char
+         type(c_ptr), value :: chains
+         integer(c_signed_char), intent(out) :: implied(*)
          integer(c_int) :: status
       end function
 

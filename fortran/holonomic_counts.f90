@@ -1,9 +1,10 @@
 ! What the molecules consist of.
 module holonomic_counts
-   use, intrinsic :: iso_c_binding, only: c_int, c_int64_t, c_loc, c_null_ptr
-   use, intrinsic :: iso_fortran_env, only: int32, int64
-   use holonomic_c, only: hol_chains_atoms, hol_chains_bonds, hol_chains_degrees_of_freedom, hol_chains_memory, &
-                          hol_chains_molecule, hol_chains_molecules_of_bonds, hol_chains_n_atoms, hol_chains_n_bonds, &
+   use, intrinsic :: iso_c_binding, only: c_int, c_int64_t, c_loc, c_null_ptr, c_signed_char
+   use, intrinsic :: iso_fortran_env, only: int32, int64, real64
+   use holonomic_c, only: hol_chains_adjustment, hol_chains_atoms, hol_chains_bonds, hol_chains_degrees_of_freedom, &
+                          hol_chains_implied, hol_chains_memory, hol_chains_molecule, hol_chains_molecules_of_bonds, &
+                          hol_chains_n_atoms, hol_chains_n_bonds, &
                           hol_chains_n_molecules, hol_chains_n_kinds, hol_chains_n_of_shape, hol_chains_offsets
    use holonomic_place, only: enough
    use holonomic_settings, only: chain_set_settings
@@ -21,6 +22,8 @@ module holonomic_counts
       procedure :: memory
       procedure :: n_of_shape
       procedure :: n_kinds
+      procedure :: adjustment
+      procedure :: implied
       procedure :: offsets
       procedure :: molecules_of_bonds
       ! Of one molecule by its number, default or 64-bit integer; atoms also of all of them.
@@ -75,6 +78,40 @@ contains
       class(chain_set_counts), intent(in) :: self
       n_kinds = hol_chains_n_kinds(self%c_handle())
    end function
+
+   ! By which part of it the length of a rigid group was adjusted that was adjusted most, and its bond; -1: none was.
+   recursive subroutine adjustment(self, largest, bond, stat, errmsg)
+      class(chain_set_counts), intent(in) :: self
+      real(real64), intent(out) :: largest
+      integer(int64), intent(out), optional :: bond
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      integer(c_int64_t) :: number
+      type(failure) :: problem
+      largest = 0
+      number = -1
+      call problem%need_created(self%c_handle())
+      call problem%ask(hol_chains_adjustment(self%c_handle(), largest, number))
+      if (present(bond)) bond = number
+      call settle(problem, "adjustment", stat, errmsg)
+   end subroutine
+
+   ! Which distances others imply: they are in no equation.
+   recursive subroutine implied(self, is_implied, stat, errmsg)
+      class(chain_set_counts), intent(in) :: self
+      logical, intent(inout) :: is_implied(:)
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      integer(c_signed_char), allocatable :: bytes(:)
+      type(failure) :: problem
+      call problem%need_created(self%c_handle())
+      if (enough("is_implied", size(is_implied, kind=int64), self%n_bonds(), "bonds", problem)) then
+         allocate (bytes(max(1_int64, self%n_bonds())))
+         call problem%ask(hol_chains_implied(self%c_handle(), bytes))
+         if (problem%none()) is_implied(:self%n_bonds()) = bytes(:self%n_bonds()) /= 0
+      end if
+      call settle(problem, "implied", stat, errmsg)
+   end subroutine
 
    ! Where the bonds of each molecule follow one another, as in a set of linear chains alone:
    ! first_bond(n_molecules + 1): molecule m has the bonds first_bond(m) .. first_bond(m + 1) - 1 of arrays per bond.

@@ -2,11 +2,12 @@
 module holonomic_settings
    use, intrinsic :: iso_c_binding, only: c_int, c_int64_t, c_loc, c_null_ptr, c_ptr, c_signed_char
    use, intrinsic :: iso_fortran_env, only: int32, int64, real64
-   use holonomic_rigid, only: chain_set_rigid
+   use holonomic_linear, only: chain_set_linear
    use holonomic_c, only: hol_chains_n_atoms, hol_chains_n_bonds, hol_chains_n_molecules, hol_chains_set_active, &
                           hol_chains_set_box, hol_chains_set_box_rate, hol_chains_set_checks, hol_chains_set_labels, &
                           hol_chains_set_lengths, hol_chains_set_masses, &
-                          hol_chains_set_max_iterations, hol_chains_set_memory_limit, hol_chains_set_reference_box, &
+                          hol_chains_set_length_tolerance, hol_chains_set_max_iterations, &
+                          hol_chains_set_memory_limit, hol_chains_set_reference_box, &
                           hol_chains_set_threads, hol_chains_set_tolerance, HOL_ERR_MEMORY
    use holonomic_place, only: enough, list_of, tensor
    use holonomic_status, only: failure, settle
@@ -14,7 +15,7 @@ module holonomic_settings
    private
    public :: chain_set_settings
 
-   type, extends(chain_set_rigid) :: chain_set_settings
+   type, extends(chain_set_linear) :: chain_set_settings
    contains
       procedure, private :: set_box_matrix, set_box_lengths
       generic :: set_box => set_box_matrix, set_box_lengths
@@ -29,6 +30,7 @@ module holonomic_settings
       procedure :: set_active
       procedure, private :: set_tolerance_to
       generic :: set_tolerance => set_tolerance_to
+      procedure :: set_length_tolerance
       procedure :: set_max_iterations
       procedure, private :: set_memory_limit_32, set_memory_limit_64
       generic :: set_memory_limit => set_memory_limit_32, set_memory_limit_64
@@ -209,6 +211,18 @@ contains
       call problem%need_created(self%c_handle())
       call problem%ask(hol_chains_set_tolerance(self%c_handle(), tolerance))
       call settle(problem, "set_tolerance", stat, errmsg)
+   end subroutine
+
+   ! By which part of them lengths of rigid groups may be adjusted.
+   subroutine set_length_tolerance(self, tolerance, stat, errmsg)
+      class(chain_set_settings), intent(inout) :: self
+      real(real64), intent(in) :: tolerance
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      type(failure) :: problem
+      call problem%need_created(self%c_handle())
+      call problem%ask(hol_chains_set_length_tolerance(self%c_handle(), tolerance))
+      call settle(problem, "set_length_tolerance", stat, errmsg)
    end subroutine
 
    subroutine set_max_iterations(self, max_iterations, stat, errmsg)

@@ -41,9 +41,9 @@ Error outside(const char *what, std::int64_t count, std::int64_t size, std::int6
 }  // namespace
 
 // Lengths are compared by their squares, which must neither vanish nor overflow.
-void check_lengths(std::int64_t n_bonds, const double *lengths, int base) {
+void check_lengths(std::int64_t n_bonds, const double *lengths, int base, bool may_be_zero) {
     for (std::int64_t k = 0; k < n_bonds; ++k) {
-        if (lengths[k] >= 1e-150 && lengths[k] <= 1e150) continue;
+        if ((lengths[k] >= 1e-150 && lengths[k] <= 1e150) || (may_be_zero && lengths[k] == 0)) continue;
         const char *const range =
             lengths[k] > 0 && std::isfinite(lengths[k]) ? "between 1e-150 and 1e150" : "positive and finite";
         Error error = make_error(Status::value, "the length of bond %lld is %g; it must be %s", number(k, base),
@@ -105,12 +105,13 @@ void Chains::add_bonds(std::int64_t n_bonds, const std::int64_t *pairs, const do
         throw make_error(Status::value, "n_bonds is %lld; it must be at most %lld in a call",
                          static_cast<long long>(n_bonds), static_cast<long long>(most_bonds));
     check_memory(*this, n_bonds, bytes_of_listed_bond);
-    check_lengths(n_bonds, lengths, base);
+    check_lengths(n_bonds, lengths, base, true);
     add_listed({n_bonds, pairs, base, &labels_, bonds_round(box, *std::max_element(lengths, lengths + n_bonds))},
                lengths, n_bonds);
 }
 
 void Chains::add_listed(const BondList &list, const double *lengths, std::int64_t n_lengths) {
+    if (std::count(lengths, lengths + n_lengths, 0.0) > 0) return add_with_bodies(list, lengths, n_lengths);
     try {
         const FoundMolecules found = find_molecules(masses_, n_atoms_, list);
         Batch batch(*this);
@@ -136,7 +137,7 @@ void Chains::add_molecules(std::int64_t count, std::int64_t n_atoms, std::int64_
     if (first < 0 || first >= n_atoms_ || n_atoms > n_atoms_ || count > (n_atoms_ - first) / n_atoms)
         throw outside("molecules", count, n_atoms, first_atom, n_atoms_, base);
     check_memory(*this, count * n_bonds, bytes_of_listed_bond);
-    check_lengths(n_bonds, lengths, base);
+    check_lengths(n_bonds, lengths, base, true);
     for (std::int64_t e = 0; e < 2 * n_bonds; ++e)
         if (pairs[e] < base || pairs[e] - base >= n_atoms) {
             Error error =

@@ -139,8 +139,9 @@ void Batch::append_one(const FoundMolecules &found, std::size_t m, std::int32_t 
     const std::int64_t kind =
         chains_.kinds_.find(shape, molecule.n_atoms, molecule.n_bonds, w_.data(), lengths, chains_.groups_.last_kind());
     if (kind == n_kinds && shape != linear) {
-        check_closable(chains_.shapes_[shape], atoms, bonds, lengths);
-        flat_ = flat_ || rigid::has_dependent_lengths(chains_.shapes_[shape], w_.data(), lengths);
+        flat_ =
+            flat_ || rigid::has_dependent_lengths(chains_.shapes_[shape], w_.data(), lengths, chains_.length_tolerance);
+        if (!flat_) check_closable(chains_.shapes_[shape], atoms, bonds, lengths);
     }
     bool list_atoms = !ascend(atoms, molecule.n_atoms), list_bonds = !ascend(bonds, molecule.n_bonds);
     if (!list_atoms || !list_bonds) {

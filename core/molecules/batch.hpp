@@ -8,8 +8,8 @@
 
 namespace holonomic {
 
-// Throws Error if a length is out of range.
-void check_lengths(std::int64_t n_bonds, const double *lengths, int base);
+// Throws Error if a length is out of range. may_be_zero: its two atoms are one point.
+void check_lengths(std::int64_t n_bonds, const double *lengths, int base, bool may_be_zero = false);
 
 class Batch {
 public:
@@ -27,10 +27,11 @@ public:
     // Whether a molecule has atoms on a line or in a plane that are all bonded to each other.
     bool is_flat() const { return flat_; }
     void commit();
+    // A bond that is in no equation.
+    void leave_out(std::int64_t bond, const std::int64_t *atoms, double length);
 
 private:
     void append_part(std::int64_t n_bonds, const std::int64_t *atoms, const double *lengths, std::int64_t first_bond);
-    void leave_out(std::int64_t bond, const std::int64_t *atoms, double length);  // of two fixed atoms
     std::int32_t shape_of(const FoundMolecules &found, std::size_t m, std::int32_t likely);
     void append_one(const FoundMolecules &found, std::size_t m, std::int32_t shape, const double *lengths);
     void note_direction(const FoundMolecules &found, const FoundMolecule &molecule, const BondList &list);

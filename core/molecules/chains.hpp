@@ -22,7 +22,9 @@ namespace holonomic {
 
 namespace rigid {
 class Bodies;
+struct Cliques;
 struct Given;
+struct LooseParts;
 }  // namespace rigid
 
 // What a bond is. The values are those of hol_role, which capi/queries.cpp asserts.
@@ -43,6 +45,9 @@ public:
     void add(std::int64_t n_bonds, const std::int64_t *atoms, const double *lengths);
     void add_block(std::int64_t n_chains, std::int64_t n_bonds, std::int64_t first_atom, const double *lengths);
     void add_bonds(std::int64_t n_bonds, const std::int64_t *pairs, const double *lengths);
+    // sum c_i r_i = 0, and bonds of the molecules in which these are (rigid/linear.hpp).
+    void add_linear(std::int64_t n_relations, const std::int64_t *sizes, const std::int64_t *atoms,
+                    const double *coefficients, std::int64_t n_bonds, const std::int64_t *pairs, const double *lengths);
     void add_molecules(std::int64_t n_molecules, std::int64_t n_atoms, std::int64_t first_atom, std::int64_t n_bonds,
                        const std::int64_t *pairs, const double *lengths);
 
@@ -94,6 +99,13 @@ public:
     const double *given_reference_box() const { return has_reference_box_ ? given_reference_box_.h : given_box_.h; }
     std::int64_t degrees_of_freedom(int dimensions) const;
     Name name_of_atom(std::int64_t atom) const { return labels_.of_atom(atom, base); }
+    // The length that a body changed most, by which part of it; 0 and bond -1: none.
+    struct Adjustment {
+        double largest = 0;
+        std::int64_t bond = -1;
+    };
+    const Adjustment &adjustment() const { return adjustment_; }
+    const std::vector<std::int64_t> &implied() const { return implied_; }
     Name name_of_molecule(std::int64_t molecule) const;
     Name name_of_rigid(std::int64_t molecule, std::int64_t atom) const {  // of a molecule with bodies, by one atom
         return labels_.of_molecule(molecule, atom, base);
@@ -151,6 +163,7 @@ public:
     int base = 0;  // set_base
     int n_threads = 1;
     double tolerance = 0;
+    double length_tolerance = 1e-3;  // by what part lengths of bodies are adjusted, at most (rigid/fit.hpp)
     int max_iterations = 50;
     bool keeps_outcomes = false;    // core/run/outcomes.hpp
     bool finds_bodies = true;       // in lists of bonds whose lengths depend on each other; else they are refused
@@ -180,12 +193,15 @@ private:
     void check_width(const Box &next, double longest, const double *lengths) const;
     std::vector<rigid::Given> sort_rigid(std::int64_t n_bodies, const std::int64_t *sizes, const std::int64_t *atoms,
                                          std::int64_t offset, const double *places, std::int64_t n_bonds,
-                                         const std::int64_t *pairs, const double *lengths) const;
+                                         const std::int64_t *pairs, const double *lengths,
+                                         const rigid::LooseParts *parts = nullptr) const;
     // `also`, of another addition in the same call: done when nothing else can fail but it.
     void commit_rigid(const std::vector<rigid::Given> &molecules, std::int64_t n_bonds, Batch *also = nullptr);
     // Bond k of the list has the length lengths[k % n_lengths]. Parts that depend become bodies (rigid/cliques.hpp).
     void add_listed(const BondList &list, const double *lengths, std::int64_t n_lengths);
     void add_with_bodies(const BondList &list, const double *lengths, std::int64_t n_lengths);
+    rigid::LooseParts take_linear(const BondList &list, const double *lengths, std::int64_t n_lengths,
+                                  rigid::Cliques &cliques, std::vector<unsigned char> &implied) const;
     std::unique_ptr<rigid::Bodies> rebuild_bodies(const Masses &masses, const double *lengths) const;
     double longest() const;
     template <class Each>
@@ -198,7 +214,8 @@ private:
     Kinds kinds_;
     Shapes shapes_;
     Groups groups_;
-    std::vector<std::int64_t> unconstrained_;  // bonds between two fixed atoms, in the caller's arrays
+    std::vector<std::int64_t> unconstrained_;  // bonds in no equation, in the caller's arrays: between two fixed atoms,
+    std::vector<std::int64_t> implied_;        // or those that others imply (rigid/implied.hpp), which ascend
     struct Given {
         std::int64_t atoms[2];
         double length;
@@ -207,6 +224,7 @@ private:
     std::vector<unsigned char> backwards_;  // [n_bonds], or empty: no bond is
     std::vector<unsigned char> active_;     // [n_chains] or empty: all
     Owned<rigid::Bodies> bodies_;
+    Adjustment adjustment_;
     Labels labels_;
     Box reference_box_{};
     struct GivenBox {

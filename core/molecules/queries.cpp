@@ -153,7 +153,8 @@ void Chains::for_bonds(const Each &each) const {
     }
     for (std::size_t k = 0; k < unconstrained_.size(); ++k) {
         const Given &given = of_unconstrained_[k];
-        each(unconstrained_[k], given.atoms[0], given.atoms[1], given.length, Role::fixed);
+        const bool implied = std::binary_search(implied_.begin(), implied_.end(), unconstrained_[k]);
+        each(unconstrained_[k], given.atoms[0], given.atoms[1], given.length, implied ? Role::implied : Role::fixed);
     }
     for (std::int64_t m = 0; bodies_ && m < bodies_->n_molecules(); ++m) {
         const std::int64_t *const atom = bodies_->atoms(m), *number = bodies_->bonds(m);

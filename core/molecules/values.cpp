@@ -56,7 +56,9 @@ void Chains::rebuild(const Masses &masses, const double *lengths) {
 constexpr double small_change = 1.5;
 
 void Chains::set_lengths(const double *lengths) {
-    check_lengths(n_bonds_, lengths, base);
+    std::vector<double> in_equations(lengths, lengths + n_bonds_);
+    for (const std::int64_t bond : implied_) in_equations[at(bond)] = 1;
+    check_lengths(n_bonds_, in_equations.data(), base);
     bool small = fits_.get();
     for (std::int64_t c = 0; small && c < n_chains(); ++c) {
         const Molecule m = molecule(c);

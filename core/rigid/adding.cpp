@@ -9,6 +9,9 @@
 #include "core/molecules/memory_limit.hpp"
 #include "core/rigid/bodies.hpp"
 #include "core/rigid/cliques.hpp"
+#include "core/rigid/fit.hpp"
+#include "core/rigid/implied.hpp"
+#include "core/rigid/linear.hpp"
 
 namespace holonomic {
 
@@ -103,6 +106,20 @@ BodyName name_of_body(const Chains &chains, const rigid::Given &given, std::int6
          chains.base, -1, cliques.atoms[0] - chains.base);
 }
 
+// A body that its lengths have made stays as it is, and so do flat and straight groups.
+void set_length(const rigid::Shape &shape, std::size_t bond, double length, rigid::Given &given) {
+    const double old = given.bonds[bond].length;
+    given.bonds[bond].length = length;
+    const rigid::Bond &its = shape.bonds[bond];
+    const auto part = [&](std::int32_t atom) { return atom < shape.n_held ? shape.part_of[at(atom)] : -1 - atom; };
+    const bool within = part(its.i) == part(its.j);
+    if (!shape.by_lengths || !within) return;
+    if (!(std::fabs(length - old) <= rigid::same_length * old))
+        throw rigid::Refusal{
+            rigid::Refusal::of_bonds, {}, {rigid::Unsolvable::length_in_body, static_cast<std::int32_t>(bond)}, -1};
+    given.bonds[bond].length = old;
+}
+
 }  // namespace
 
 void Chains::add_rigid(std::int64_t n_bodies, const std::int64_t *sizes, const std::int64_t *atoms,
@@ -163,16 +180,25 @@ void Chains::add_rigid_molecules(std::int64_t count, std::int64_t n_atoms, std::
     commit_rigid(all, count * n_bonds);
 }
 
-// Where parts of the list depend, their molecules are added as bodies, the others as ever.
+// Where parts of the list depend, their molecules are added as bodies, or without what others imply, the others as
+// ever.
 void Chains::add_with_bodies(const BondList &list, const double *lengths, std::int64_t n_lengths) {
-    const rigid::Cliques cliques = rigid::find_cliques(masses_, list, lengths, n_lengths);
+    rigid::Cliques cliques = rigid::find_cliques(masses_, list, lengths, n_lengths, length_tolerance);
+    std::vector<unsigned char> implied = rigid::implied_bonds(masses_, list, lengths, n_lengths, cliques);
+    if (!cliques.shared.empty() || std::count(implied.begin(), implied.end(), 1) > 0)
+        cliques = rigid::find_cliques(masses_, list, lengths, n_lengths, length_tolerance, implied);
+    rigid::LooseParts parts;
+    const bool has_points = std::count(lengths, lengths + n_lengths, 0.0) > 0;
+    if (!cliques.linear.empty() || has_points) parts = take_linear(list, lengths, n_lengths, cliques, implied);
     FoundMolecules found;
-    std::vector<std::int64_t> pairs, rest, rest_pairs;
+    std::vector<std::int64_t> pairs, of_bodies, rest, rest_pairs;
     std::vector<double> its_lengths;
     std::size_t next = 0;
     for (std::int64_t k = 0; k < list.n_bonds; ++k) {
         const bool of_body = next < cliques.bonds.size() && cliques.bonds[next] == k;
         next += of_body;
+        if (implied[at(k)]) continue;
+        if (of_body) of_bodies.push_back(k);
         std::vector<std::int64_t> &to = of_body ? pairs : rest_pairs;
         to.push_back(list.pairs[2 * k]);
         to.push_back(list.pairs[2 * k + 1]);
@@ -192,16 +218,33 @@ void Chains::add_with_bodies(const BondList &list, const double *lengths, std::i
     for (std::int64_t &bond : found.unconstrained) bond = rest[at(bond)];
     Batch batch(*this);
     batch.append_found(found, list, lengths, n_lengths);
-    if (cliques.sizes.empty()) return batch.commit();
+    for (std::int64_t k = 0; k < list.n_bonds; ++k) {
+        if (!implied[at(k)]) continue;
+        const std::int64_t atoms[2] = {list.pairs[2 * k] - list.base, list.pairs[2 * k + 1] - list.base};
+        batch.leave_out(n_bonds_ + k, atoms, lengths[k % n_lengths]);
+    }
+    const std::int64_t first_bond = n_bonds_;
+    const auto note = [&] {
+        if (cliques.adjusted > rigid::rounding && cliques.adjusted > adjustment_.largest)
+            adjustment_ = {cliques.adjusted, first_bond + cliques.adjusted_bond};
+        for (std::int64_t k = 0; k < list.n_bonds; ++k)
+            if (implied[at(k)]) implied_.push_back(first_bond + k);
+    };
+    if (cliques.sizes.empty()) {
+        batch.commit();
+        return note();
+    }
     if (!finds_bodies) refuse_body(*this, cliques);
-    std::vector<rigid::Given> molecules = sort_rigid(
-        static_cast<std::int64_t>(cliques.sizes.size()), cliques.sizes.data(), cliques.atoms.data(), 0,
-        cliques.places.data(), static_cast<std::int64_t>(its_lengths.size()), pairs.data(), its_lengths.data());
+    std::vector<rigid::Given> molecules =
+        sort_rigid(static_cast<std::int64_t>(cliques.sizes.size()), cliques.sizes.data(), cliques.atoms.data(), 0,
+                   cliques.places.data(), static_cast<std::int64_t>(its_lengths.size()), pairs.data(),
+                   its_lengths.data(), parts.loose.empty() ? nullptr : &parts);
     for (rigid::Given &given : molecules) {
         given.by_lengths = true;
-        for (std::int64_t &bond : given.bond_numbers) bond = n_bonds_ + cliques.bonds[at(bond - n_bonds_)];
+        for (std::int64_t &bond : given.bond_numbers) bond = n_bonds_ + of_bodies[at(bond - n_bonds_)];
     }
     commit_rigid(molecules, 0, &batch);
+    note();
 }
 
 void Chains::commit_rigid(const std::vector<rigid::Given> &molecules, std::int64_t n_bonds, Batch *also) {
@@ -253,9 +296,9 @@ std::unique_ptr<rigid::Bodies> Chains::rebuild_bodies(const Masses &masses, cons
                                 name_of_atom(atom).text),
                      base, -1, atom);
         }
-        for (std::size_t k = 0; lengths && k < given.bonds.size(); ++k)
-            given.bonds[k].length = lengths[given.bond_numbers[k]];
         try {
+            for (std::size_t k = 0; lengths && k < given.bonds.size(); ++k)
+                set_length(bodies_->shape(m), k, lengths[given.bond_numbers[k]], given);
             next->add(given);
         } catch (const rigid::Refusal &refusal) {
             refuse(*this, given, refusal);

@@ -52,24 +52,41 @@ std::vector<double> signature_of(const Given &given) {
         words.push_back(bond.j);
         words.push_back(bond.length);
     }
+    if (given.loose.empty()) return words;
+    for (const Loose &loose : given.loose) {
+        words.push_back(loose.relations.n_atoms);
+        count(loose.relations.c.size());
+        words.insert(words.end(), loose.relations.c.begin(), loose.relations.c.end());
+        words.push_back(loose.extent);
+    }
+    count(given.hidden.size());
+    for (const Bond &bond : given.hidden) words.insert(words.end(), {double(bond.i), double(bond.j), bond.length});
+    for (const Step &link : given.links) words.insert(words.end(), {double(link.atom), double(link.before)});
     return words;
 }
 
 }  // namespace
 
-std::int32_t Bodies::find_body(std::int32_t n, const double *masses, const double *place) {
+std::int32_t Bodies::find_body(std::int32_t n, const double *masses, const double *place, const Loose *loose) {
+    const Relations none, &relations = loose ? loose->relations : none;
+    const bool is_rigid = !loose || loose->is_rigid();
     Hash hash;
     for (std::int32_t a = 0; a < n; ++a) hash.take(masses[a]);
     for (std::int32_t a = 0; a < 3 * n; ++a) hash.take(place[a]);
+    hash.take(relations.n_atoms);
+    for (const double c : relations.c) hash.take(c);
     const auto range = kind_of_hash_.equal_range(hash.value());
     for (auto found = range.first; found != range.second; ++found) {
         const Body &body = kinds_[at(found->second)];
         if (body.n_atoms == n && same_words(body.masses.data(), masses, at(n)) &&
-            same_words(body.place.data(), place, 3 * at(n)))
+            same_words(body.place.data(), place, 3 * at(n)) && body.is_rigid == is_rigid &&
+            body.relations.c.size() == relations.c.size() &&
+            same_words(body.relations.c.data(), relations.c.data(), relations.c.size()) &&
+            (is_rigid || body.extent == loose->extent))
             return found->second;
     }
     const std::int32_t number = static_cast<std::int32_t>(kinds_.size());
-    kinds_.push_back(make_body(n, masses, place));
+    kinds_.push_back(is_rigid ? make_body(n, masses, place) : make_loose(masses, relations, loose->extent));
     kind_of_hash_.emplace(hash.value(), number);
     return number;
 }
@@ -94,10 +111,13 @@ std::int32_t Bodies::find_shape(const Given &given) {
     shape.mass = given.masses;
     shape.bonds = given.bonds;
     shape.by_lengths = given.by_lengths;
+    shape.hidden = given.hidden;
+    shape.links = given.links;
     for (std::size_t b = 0; b < given.sizes.size(); ++b) {
         try {
             const std::int32_t body = find_body(given.sizes[b], given.masses.data() + shape.n_held,
-                                                given.place.data() + 3 * std::ptrdiff_t{shape.n_held});
+                                                given.place.data() + 3 * std::ptrdiff_t{shape.n_held},
+                                                given.loose.empty() ? nullptr : &given.loose[b]);
             shape.parts.push_back({body, shape.n_held, 0});
         } catch (const BodyFault &fault) {
             const std::int32_t atom = fault.atom < 0 ? -1 : shape.n_held + fault.atom;
@@ -145,12 +165,17 @@ Given Bodies::given(std::int64_t molecule) const {
     given.bond_numbers.assign(numbers, numbers + its.bonds.size());
     given.n_movable = its.n_movable;
     given.by_lengths = its.by_lengths;
+    given.hidden = its.hidden;
+    given.links = its.links;
     given.masses = its.mass;
     for (const Part &part : its.parts) {
         const Body &kind = body(part);
         given.sizes.push_back(kind.n_atoms);
         given.place.insert(given.place.end(), kind.place.begin(), kind.place.end());
+        given.loose.push_back({kind.relations, kind.is_rigid ? 0 : kind.extent});
     }
+    if (std::all_of(given.loose.begin(), given.loose.end(), [](const Loose &loose) { return loose.is_rigid(); }))
+        given.loose.clear();
     return given;
 }
 
@@ -200,11 +225,12 @@ std::int64_t Bodies::constraints(int dimensions) const {
 }
 
 std::int64_t Bodies::constraints(std::int64_t molecule, int dimensions) const {
-    std::int64_t taken = 0;
-    for (const Bond &bond : shape(molecule).bonds) taken += bond.row >= 0;
-    for (const Part &part : shape(molecule).parts) {
+    const Shape &its = shape(molecule);
+    std::int64_t taken = static_cast<std::int64_t>(its.hidden.size());
+    for (const Bond &bond : its.bonds) taken += bond.row >= 0;
+    for (const Part &part : its.parts) {
         const Body &kind = body(part);
-        const int left = dimensions == 2 ? 3 : kind.rank == 1 ? 5 : 6;
+        const int left = !kind.is_rigid ? dimensions * (1 + kind.rank) : dimensions == 2 ? 3 : kind.rank == 1 ? 5 : 6;
         taken += dimensions * kind.n_massive - left;
     }
     return taken;

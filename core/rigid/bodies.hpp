@@ -10,6 +10,13 @@
 
 namespace holonomic::rigid {
 
+// What makes a part a loose one: relations among its atoms, though there may be none. A rigid body has no such atoms.
+struct Loose {
+    Relations relations;
+    double extent = 0;
+    bool is_rigid() const { return relations.n_atoms == 0; }
+};
+
 // Bodies and bonds of one molecule as they are given; atoms are the caller's, counted from 0.
 struct Given {
     std::vector<std::int32_t> sizes;  // of the bodies
@@ -20,6 +27,9 @@ struct Given {
     std::vector<Bond> bonds;
     std::vector<std::int64_t> bond_numbers;  // in the arrays per bond
     bool by_lengths = false;                 // bonds within bodies are what holds these, and have multipliers
+    std::vector<Loose> loose;                // of the bodies, or empty: all are rigid
+    std::vector<Bond> hidden;                // distances that are held and are no bonds of the caller's
+    std::vector<Step> links;                 // pairs of atoms between which nearest images are taken where no bond is
 };
 
 // What makes given bodies impossible: a body's fault or that of their bonds.
@@ -87,7 +97,7 @@ private:
         std::int64_t first_atom, first_bond;
     };
     std::int32_t find_shape(const Given &given);
-    std::int32_t find_body(std::int32_t n, const double *masses, const double *place);
+    std::int32_t find_body(std::int32_t n, const double *masses, const double *place, const Loose *loose);
 
     std::vector<Body> kinds_;
     std::unordered_multimap<std::uint64_t, std::int32_t> kind_of_hash_, shape_of_hash_;

@@ -220,7 +220,8 @@ Body make_body(std::int32_t n, const double *masses, const double *place) {
 
 std::int64_t Body::bytes() const {
     return static_cast<std::int64_t>((masses.capacity() + place.capacity() + weights.capacity()) * sizeof(double) +
-                                     (y.capacity() + share.capacity()) * sizeof(DoublePair) + sizeof *this);
+                                     (y.capacity() + share.capacity()) * sizeof(DoublePair) +
+                                     relations.c.capacity() * sizeof(double) + sizeof *this);
 }
 
 const char *fault_in_words(BodyFault::Cause cause) {
@@ -238,6 +239,10 @@ const char *fault_in_words(BodyFault::Cause cause) {
         case BodyFault::outside:
             return "has a massless site off the line or plane of its masses: such a site has no place that the masses "
                    "determine";
+        case BodyFault::twice:
+            return "has a linear relation that follows from the others";
+        case BodyFault::undetermined:
+            return "has massless atoms whose places do not follow from those of atoms with mass";
         default:
             return "has an atom so light that the others alone determine its motion, and off their line or plane";
     }

@@ -9,23 +9,29 @@
 // because sum m y = 0 and sum m y y^T = M 1: as far as masses go, c and the u_p are points of mass M each, and what
 // keeps the body rigid is rank (rank+1)/2 products of them, whatever the number of its atoms. A massless site is
 // carried along: its force goes to c and the u_p like the others'.
+//
+// Atoms between which linear relations hold, and nothing else, are a *loose* part: c and vectors u_p with other y, of
+// the same sums, as many as the relations leave free; no products of them are held. Distances between its atoms may be.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
 #include "core/double_pair.hpp"
+#include "core/rigid/relations.hpp"
 
 namespace holonomic::rigid {
 
 struct Body {
     std::int32_t n_atoms;
-    std::int32_t rank;       // 1: on a line, 2: in a plane, 3
+    std::int32_t rank;       // 1: on a line, 2: in a plane, 3; of a loose part any
     std::int32_t n_massive;  // atoms that are no sites
     double mass, inverse_mass;
     double length[3];               // L_p, descending
     DoublePair square[3];           // L_p^2
-    double extent;                  // the largest distance of an atom from the centre
+    double extent;                  // the largest distance of an atom from the centre; of a loose part a length of it
+    bool is_rigid = true;           // else loose
+    Relations relations;            // of a loose part
     std::vector<double> masses;     // [n_atoms], 0: a massless site
     std::vector<double> place;      // [n_atoms][3] the reference coordinates as they were given
     bool is_thick;                  // plain doubles do: neither thin nor with atoms far out for their mass
@@ -39,12 +45,15 @@ struct Body {
 
 // What makes a body impossible; `atom` within it, -1 if it is none in particular.
 struct BodyFault {
-    enum Cause { no_mass, one_mass, one_point, not_finite, size, outside, light } cause;
+    enum Cause { no_mass, one_mass, one_point, not_finite, size, outside, light, twice, undetermined } cause;
     std::int32_t atom;
 };
 
 // masses [n], of which 0 are sites; place [n][3]. Throws BodyFault.
 Body make_body(std::int32_t n, const double *masses, const double *place);
+
+// relations: none of them implied by others. extent: what violations are relative to. Throws BodyFault.
+Body make_loose(const double *masses, const Relations &relations, double extent);
 
 // "has no mass", ...
 const char *fault_in_words(BodyFault::Cause cause);

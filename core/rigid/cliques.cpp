@@ -1,11 +1,12 @@
 #include "core/rigid/cliques.hpp"
 
+#include "core/rigid/fit.hpp"
 #include "core/rigid/flat_ring.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
+#include <string>
 #include <unordered_map>
 
 namespace holonomic::rigid {
@@ -13,49 +14,6 @@ namespace holonomic::rigid {
 namespace {
 
 std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
-
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
-
-// What lengths of a body may be off; and where they decide whether it is one.
-constexpr double same_length = 1e-6, same_to_rounding = 16 * epsilon;
-
-double distance_between(const double *a, const double *b) {
-    const double d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-    return std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-}
-
-// Cholesky's factors of the inner products from atom 0, the largest remaining height first.
-class Heights {
-public:
-    Heights(std::int64_t n, const double *squares) : n_(n), squares_(squares), x_(3 * at(n), 0), height_(at(n)) {
-        for (std::int64_t i = 0; i < n; ++i) height_[at(i)] = squares[i];
-        for (std::int64_t e = 0; e < n * n; ++e) largest_ = std::max(largest_, squares[e]);
-    }
-    bool is_done(double rounding) const { return dimension_ == 3 || highest() <= rounding * largest_; }
-    void go_on() {
-        const std::int64_t p = std::max_element(height_.begin(), height_.end()) - height_.begin();
-        const long double root = std::sqrt(height_[at(p)]);
-        for (std::int64_t i = 0; i < n_; ++i) {
-            long double product = (static_cast<long double>(squares_[i]) + squares_[p] - squares_[i * n_ + p]) / 2;
-            for (int c = 0; c < dimension_; ++c) product -= x_[at(3 * i + c)] * x_[at(3 * p + c)];
-            x_[at(3 * i + dimension_)] = i == 0 ? 0 : product / root;
-        }
-        for (std::int64_t i = 0; i < n_; ++i) height_[at(i)] -= x_[at(3 * i + dimension_)] * x_[at(3 * i + dimension_)];
-        height_[at(p)] = 0;
-        ++dimension_;
-    }
-    int dimension() const { return dimension_; }
-    const std::vector<long double> &places() const { return x_; }
-
-private:
-    double highest() const { return static_cast<double>(*std::max_element(height_.begin(), height_.end())); }
-
-    const std::int64_t n_;
-    const double *const squares_;
-    std::vector<long double> x_, height_;
-    double largest_ = 0;
-    int dimension_ = 0;
-};
 
 class Search {
 public:
@@ -71,11 +29,17 @@ public:
         return bond < 0 ? -1 : lengths_[bond % n_lengths_] * lengths_[bond % n_lengths_];
     }
 
-    Search(const Masses &masses, const BondList &list, const double *lengths, std::int64_t n_lengths)
-        : list_(list), lengths_(lengths), n_lengths_(n_lengths) {
+    Search(const Masses &masses, const BondList &list, const double *lengths, std::int64_t n_lengths, double tolerance,
+           const std::vector<unsigned char> &left_out)
+        : list_(list), lengths_(lengths), n_lengths_(n_lengths), tolerance_(tolerance), left_out_(left_out) {
         for (std::int64_t k = 0; k < list.n_bonds; ++k) {
             const std::int64_t i = list.pairs[2 * k], j = list.pairs[2 * k + 1];
             if (masses.fixed(i - list.base) || masses.fixed(j - list.base) || i == j) continue;
+            if (length(k) == 0) {
+                bonds_of_[i], bonds_of_[j];
+                found_.linear.add({{i, j}, std::vector<double>(6, 0), 0});
+                continue;
+            }
             bonds_of_[i].push_back({j, k});
             bonds_of_[j].push_back({i, k});
         }
@@ -83,11 +47,18 @@ public:
     }
 
     Cliques find() {
-        for (const bool five : {true, false})
-            for (std::int64_t k = 0; k < list_.n_bonds; ++k) look_around(k, five);
+        for (std::int64_t k = 0; k < list_.n_bonds; ++k)
+            if (is_left_out(k)) compare(k);
+        take_away();
+        for (std::int64_t k = 0; k < list_.n_bonds; ++k) look_around(k, true);
         std::int64_t steps = steps_for_rings(list_.n_bonds);
         for (std::int64_t k = 0; k < list_.n_bonds; ++k) look_for_ring(k, steps);
-        if (!found_.sizes.empty()) collect_bonds();
+        for (std::int64_t k = 0; k < list_.n_bonds; ++k) look_around(k, false);
+        found_.bonds = bonds_from(held_atoms());
+        for (const std::int64_t k : found_.bonds) look_for_shared(k);
+        if (found_.linear.empty()) return std::move(found_);
+        take_sharing_bodies(found_.sizes, found_.atoms, found_.places, found_.linear);
+        found_.linear_bonds = bonds_from(linear_atoms());
         return std::move(found_);
     }
 
@@ -99,6 +70,71 @@ private:
         }
     };
 
+    bool is_left_out(std::int64_t bond) const { return !left_out_.empty() && left_out_[at(bond)] != 0; }
+
+    // A length that others imply, with those of five atoms that tell it.
+    void compare(std::int64_t bond) {
+        if (length(bond) == 0) return;
+        std::vector<std::int64_t> both, clique{list_.pairs[2 * bond], list_.pairs[2 * bond + 1]};
+        if (bonds_of_.count(clique[0]) && bonds_of_.count(clique[1]))
+            for (const Partner &partner : bonds_of_.at(clique[0]))
+                if (bond_between(partner.atom, clique[1]) >= 0) both.push_back(partner.atom);
+        grow(clique, both);
+        if (clique.size() < 5)
+            throw bond_error(list_, Status::degenerate, bond,
+                             "is one too many: the atoms that it and the bonds around it join have fewer freedoms than "
+                             "bonds; hol_chains_add_rigid holds such a part by coordinates");
+        std::sort(clique.begin(), clique.end());
+        const Group group = look_at(distances(clique), tolerance_);
+        if (group.kind == Group::impossible) refuse(clique, group.misfit);
+        note(clique, group.misfit);
+    }
+
+    void take_away() {
+        if (left_out_.empty()) return;
+        for (auto &bonds : bonds_of_) {
+            const auto is_out = [this](const Partner &partner) { return is_left_out(partner.bond); };
+            bonds.second.erase(std::remove_if(bonds.second.begin(), bonds.second.end(), is_out), bonds.second.end());
+        }
+    }
+
+    bool is_together(const std::vector<std::int64_t> &atoms) const {
+        const auto first = body_of_.find(atoms[0]);
+        return first != body_of_.end() && std::all_of(atoms.begin(), atoms.end(), [&](std::int64_t atom) {
+                   const auto its = body_of_.find(atom);
+                   return its != body_of_.end() && its->second == first->second;
+               });
+    }
+
+    // Groups that depend and share atoms with a body: equations of distances do not hold these.
+    void look_for_shared(std::int64_t bond) {
+        const std::int64_t i = list_.pairs[2 * bond], j = list_.pairs[2 * bond + 1];
+        if (is_left_out(bond) || !bonds_of_.count(i) || !bonds_of_.count(j)) return;
+        std::vector<std::int64_t> both;
+        for (const Partner &partner : bonds_of_.at(i))
+            if (bond_between(partner.atom, j) >= 0) both.push_back(partner.atom);
+        for (std::size_t a = 0; a < both.size(); ++a) {
+            check_shared(bond, {i, j, both[a]});
+            for (std::size_t b = 0; b < a; ++b)
+                if (bond_between(both[a], both[b]) >= 0) check_shared(bond, {i, j, both[b], both[a]});
+        }
+    }
+    void check_shared(std::int64_t bond, const std::vector<std::int64_t> &atoms) {
+        if (is_together(atoms) || found_.linear.has_together(atoms) || !depend(atoms)) return;
+        if (left_out_.empty()) return found_.shared.push_back(bond);
+        Group group = look_at(distances(atoms), tolerance_);
+        std::vector<std::int64_t> all = atoms;
+        std::vector<double> places = group.places;
+        for (std::size_t next = 0; next < all.size(); ++next)
+            for (const Partner &partner : bonds_of_.at(all[next]))
+                if (std::count(all.begin(), all.end(), partner.atom) == 0)
+                    join(partner.atom, group.dimension, all, places);
+        if (all.size() > atoms.size()) group.misfit = fit_places(distances(all), group.dimension, places);
+        if (group.misfit.error > Decimals(distances(all), tolerance_).most()) refuse(all, group.misfit);
+        note(all, group.misfit);
+        found_.linear.add({std::move(all), std::move(places), group.dimension});
+    }
+
     bool is_free(std::int64_t atom) const { return bonds_of_.count(atom) && !body_of_.count(atom); }
 
     std::int64_t bond_between(std::int64_t i, std::int64_t j) const {
@@ -107,11 +143,16 @@ private:
         return found != partners.end() && found->atom == j ? found->bond : -1;
     }
 
-    std::vector<double> squares(const std::vector<std::int64_t> &atoms) const {
-        std::vector<double> all(atoms.size() * atoms.size(), 0);
-        for (std::size_t i = 0; i < atoms.size(); ++i)
-            for (std::size_t j = 0; j < atoms.size(); ++j)
-                if (i != j) all[i * atoms.size() + j] = square(atoms[i], atoms[j]);
+    double length_between(std::int64_t i, std::int64_t j) const {
+        const std::int64_t bond = bond_between(i, j);
+        return bond < 0 ? 0 : lengths_[bond % n_lengths_];
+    }
+
+    Distances distances(const std::vector<std::int64_t> &atoms) const {
+        Distances all(static_cast<std::int64_t>(atoms.size()));
+        for (std::int64_t i = 0; i < all.n; ++i)
+            for (std::int64_t j = 0; j < all.n; ++j)
+                if (i != j) all.at(i, j) = length_between(atoms[at(i)], atoms[at(j)]);
         return all;
     }
 
@@ -124,13 +165,16 @@ private:
         }
     }
 
-    bool is_flat(const std::vector<std::int64_t> &atoms) const {
-        return are_flat(static_cast<std::int64_t>(atoms.size()), squares(atoms).data());
+    bool depend(const std::vector<std::int64_t> &atoms) const {
+        const Distances wanted = distances(atoms);
+        const Group group = look_at(wanted, tolerance_);
+        if (group.kind == Group::impossible) refuse(atoms, group.misfit);
+        return group.kind == Group::dependent;
     }
 
     void look_around(std::int64_t bond, bool five) {
         const std::int64_t i = list_.pairs[2 * bond], j = list_.pairs[2 * bond + 1];
-        if (i == j || !is_free(i) || !is_free(j)) return;
+        if (i == j || is_left_out(bond) || !is_free(i) || !is_free(j)) return;
         std::vector<std::int64_t> both;
         const Atom fewer = with_fewer(i, j), other = i + j - fewer;
         for (const Partner &partner : bonds_of_.at(fewer))
@@ -146,11 +190,11 @@ private:
         }
         for (std::size_t a = 0; a < both.size(); ++a) {
             std::vector<std::int64_t> clique{i, j, both[a]};
-            bool flat = is_flat(clique);
+            bool flat = depend(clique);
             for (std::size_t b = 0; !flat && b < a; ++b) {
                 if (bond_between(both[a], both[b]) < 0) continue;
                 clique = {i, j, both[b], both[a]};
-                flat = is_flat(clique);
+                flat = depend(clique);
             }
             if (!flat) continue;
             grow(clique, both);
@@ -160,69 +204,113 @@ private:
 
     void take(std::vector<std::int64_t> clique) {
         std::sort(clique.begin(), clique.end());
-        std::vector<double> places;
-        places_of(static_cast<std::int64_t>(clique.size()), squares(clique).data(), 32 * epsilon, places);
-        take(clique, places);
+        const Group group = look_at(distances(clique), tolerance_);
+        if (group.kind == Group::impossible) refuse(clique, group.misfit);
+        take(clique, group.places, group.dimension);
     }
 
     void look_for_ring(std::int64_t bond, std::int64_t &steps) {
         const std::int64_t i = list_.pairs[2 * bond], j = list_.pairs[2 * bond + 1];
-        if (i == j || !is_free(i) || !is_free(j)) return;
-        FlatRing<Search> flat(*this, std::min(i, j), std::max(i, j), steps);
-        if (flat.find()) take(flat.ring(), flat.places());
+        if (i == j || is_left_out(bond) || !is_free(i) || !is_free(j)) return;
+        FlatRing<Search> flat(*this, std::min(i, j), std::max(i, j), tolerance_, steps);
+        if (flat.find()) take(flat.ring(), flat.places(), 2);
     }
 
-    void take(const std::vector<std::int64_t> &clique, const std::vector<double> &places) {
-        check_lengths_of(clique, places);
-        for (const std::int64_t atom : clique) body_of_[atom] = found_.sizes.size();
-        found_.sizes.push_back(static_cast<std::int64_t>(clique.size()));
-        found_.atoms.insert(found_.atoms.end(), clique.begin(), clique.end());
+    void take(std::vector<std::int64_t> atoms, std::vector<double> places, int dimension) {
+        const std::size_t body = found_.sizes.size(), n = atoms.size();
+        for (const std::int64_t atom : atoms) body_of_[atom] = body;
+        for (std::size_t next = 0; next < atoms.size(); ++next)
+            for (const Partner &partner : bonds_of_.at(atoms[next]))
+                if (is_free(partner.atom) && join(partner.atom, dimension, atoms, places))
+                    body_of_[partner.atom] = body;
+        const Distances wanted = distances(atoms);
+        const Misfit misfit = atoms.size() == n ? misfit_of(wanted, places) : fit_places(wanted, dimension, places);
+        if (misfit.error > Decimals(wanted, tolerance_).most()) refuse(atoms, misfit);
+        note(atoms, misfit);
+        found_.sizes.push_back(static_cast<std::int64_t>(atoms.size()));
+        found_.atoms.insert(found_.atoms.end(), atoms.begin(), atoms.end());
         found_.places.insert(found_.places.end(), places.begin(), places.end());
     }
 
-    // A length that all others contradict is off most.
-    void check_lengths_of(const std::vector<std::int64_t> &clique, const std::vector<double> &places) const {
-        double worst = same_length, distance = 0;
-        std::int64_t bad = -1;
-        for (std::size_t i = 0; i < clique.size(); ++i)
-            for (std::size_t j = 0; j < i; ++j) {
-                const double length = distance_between(&places[3 * i], &places[3 * j]);
-                const std::int64_t bond = bond_between(clique[i], clique[j]);
-                if (bond < 0) continue;
-                const double wanted = lengths_[bond % n_lengths_], error = std::fabs(length - wanted) / wanted;
-                if (error <= worst) continue;
-                worst = error;
-                distance = length;
-                bad = bond;
-            }
-        if (bad < 0) return;
-        char words[256];
-        std::snprintf(
-            words, sizeof words,
-            "has the length %.10g, which does not fit the others between its %zu atoms, a rigid body: by these it "
-            "would be %.10g (hol_chains_add_rigid takes coordinates)",
-            lengths_[bad % n_lengths_], clique.size(), distance);
-        throw bond_error(list_, Status::degenerate, bad, words);
+    void note(const std::vector<std::int64_t> &atoms, const Misfit &misfit) {
+        if (!(misfit.error > found_.adjusted)) return;
+        found_.adjusted = misfit.error;
+        found_.adjusted_bond = bond_between(atoms[at(misfit.i)], atoms[at(misfit.j)]);
     }
 
-    // All bonds that hang together with a body, but not through fixed atoms.
-    void collect_bonds() {
+    // An atom joins a body that holds it by more distances than its place has coordinates, all of which it fits.
+    bool join(std::int64_t atom, int dimension, std::vector<std::int64_t> &atoms, std::vector<double> &places) const {
+        std::vector<std::int64_t> near{atom};
+        std::vector<double> there{0, 0, 0};
+        for (std::size_t a = 0; a < atoms.size(); ++a) {
+            if (bond_between(atom, atoms[a]) < 0) continue;
+            near.push_back(atoms[a]);
+            there.insert(there.end(), places.begin() + static_cast<std::ptrdiff_t>(3 * a),
+                         places.begin() + static_cast<std::ptrdiff_t>(3 * a + 3));
+        }
+        if (static_cast<int>(near.size()) < dimension + 2) return false;
+        Distances wanted(static_cast<std::int64_t>(near.size()));
+        for (std::int64_t i = 1; i < wanted.n; ++i) wanted.at(i, 0) = length_between(atom, near[at(i)]);
+        if (!locate(wanted, dimension, there)) return false;
+        const Misfit misfit = misfit_of(wanted, there);
+        const Decimals decimals(wanted, tolerance_);
+        if (dimension < 3 ? !decimals.allow_joining(misfit) : misfit.error > 4 * decimals.most()) return false;
+        atoms.push_back(atom);
+        places.insert(places.end(), there.begin(), there.begin() + 3);
+        return true;
+    }
+
+    // A length that all others contradict is off most.
+    [[noreturn]] void refuse(const std::vector<std::int64_t> &atoms, const Misfit &misfit) const {
+        const std::int64_t bond = bond_between(atoms[at(misfit.i)], atoms[at(misfit.j)]);
+        char words[384];
+        std::snprintf(words, sizeof words,
+                      "has the length %.10g, which does not fit the others between its %zu atoms, a rigid body: in the "
+                      "places that fit best it is %.10g, off by %.2g of it, more than the tolerance of %.2g "
+                      "(hol_chains_set_length_tolerance; hol_chains_add_rigid takes coordinates)",
+                      lengths_[bond % n_lengths_], atoms.size(), misfit.distance, misfit.error, tolerance_);
+        throw bond_error(list_, Status::degenerate, bond, words);
+    }
+
+    std::vector<std::int64_t> linear_atoms() const {
+        std::vector<std::int64_t> all;
+        for (const LinearGroup &group : found_.linear.all())
+            all.insert(all.end(), group.atoms.begin(), group.atoms.end());
+        return all;
+    }
+    std::vector<std::int64_t> held_atoms() const {
+        std::vector<std::int64_t> all = linear_atoms();
+        all.insert(all.end(), found_.atoms.begin(), found_.atoms.end());
+        return all;
+    }
+    // All bonds that hang together with these atoms, but not through fixed atoms.
+    std::vector<std::int64_t> bonds_from(std::vector<std::int64_t> stack) const {
+        std::vector<std::int64_t> bonds;
+        if (stack.empty()) return bonds;
         std::unordered_map<std::int64_t, bool> reached;
-        std::vector<std::int64_t> stack(found_.atoms);
         for (const std::int64_t atom : stack) reached[atom] = true;
         while (!stack.empty()) {
             const std::int64_t atom = stack.back();
             stack.pop_back();
-            for (const Partner &partner : bonds_of_.at(atom))
-                if (reached.emplace(partner.atom, true).second) stack.push_back(partner.atom);
+            const auto reach = [&](std::int64_t other) {
+                if (reached.emplace(other, true).second) stack.push_back(other);
+            };
+            for (const Partner &partner : bonds_of_.at(atom)) reach(partner.atom);
+            found_.linear.for_partners(atom, reach);
         }
         for (std::int64_t k = 0; k < list_.n_bonds; ++k)
-            if (reached.count(list_.pairs[2 * k]) || reached.count(list_.pairs[2 * k + 1])) found_.bonds.push_back(k);
+            if (!is_left_out(k) && length(k) > 0 &&
+                (reached.count(list_.pairs[2 * k]) || reached.count(list_.pairs[2 * k + 1])))
+                bonds.push_back(k);
+        return bonds;
     }
+    double length(std::int64_t bond) const { return lengths_[bond % n_lengths_]; }
 
     const BondList &list_;
     const double *const lengths_;
     const std::int64_t n_lengths_;
+    const double tolerance_;
+    const std::vector<unsigned char> &left_out_;
     std::unordered_map<std::int64_t, std::vector<Partner>> bonds_of_;  // of atoms that can move
     std::unordered_map<std::int64_t, std::size_t> body_of_;
     Cliques found_;
@@ -230,29 +318,9 @@ private:
 
 }  // namespace
 
-int places_of(std::int64_t n, const double *squares, double rounding, std::vector<double> &places) {
-    Heights heights(n, squares);
-    while (!heights.is_done(rounding)) heights.go_on();
-    places.resize(3 * at(n));
-    for (std::size_t i = 0; i < places.size(); ++i) places[i] = static_cast<double>(heights.places()[i]);
-    return heights.dimension();
-}
-
-bool are_flat(std::int64_t n, const double *squares) {
-    std::vector<double> places;
-    if (places_of(n, squares, 2 * epsilon * static_cast<double>(n - 2), places) >= n - 1) return false;
-    for (std::int64_t i = 0; i < n; ++i)
-        for (std::int64_t j = 0; j < i; ++j) {
-            const double wanted = std::sqrt(squares[i * n + j]);
-            if (!(std::fabs(distance_between(&places[at(3 * i)], &places[at(3 * j)]) - wanted) <=
-                  same_to_rounding * wanted))
-                return false;
-        }
-    return true;
-}
-
-Cliques find_cliques(const Masses &masses, const BondList &list, const double *lengths, std::int64_t n_lengths) {
-    return Search(masses, list, lengths, n_lengths).find();
+Cliques find_cliques(const Masses &masses, const BondList &list, const double *lengths, std::int64_t n_lengths,
+                     double tolerance, const std::vector<unsigned char> &left_out) {
+    return Search(masses, list, lengths, n_lengths, tolerance, left_out).find();
 }
 
 }  // namespace holonomic::rigid

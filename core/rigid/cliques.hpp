@@ -1,5 +1,6 @@
 // Lists of distances that depend on each other: three atoms on a line, four in a plane, five and more, each with all of
-// the others, and rings that are held in a plane (flat_ring.hpp), are rigid bodies. Their lengths say what they look
+// the others, and rings that are held in a plane (flat_ring.hpp), are rigid bodies, with all atoms that are held to
+// them by more distances than their places have coordinates. Their lengths say what they look
 // like, but for the mirror image, which a body follows anyway.
 #pragma once
 
@@ -7,28 +8,29 @@
 #include <vector>
 
 #include "core/molecules/find.hpp"
+#include "core/rigid/linear_groups.hpp"
 
 namespace holonomic::rigid {
 
-// Places of n atoms by their squared distances [n][n], in the least dimension, up to three, above which no atom is
-// higher than rounding makes it: in squares, relative to the largest. Returns the dimension.
-int places_of(std::int64_t n, const double *squares, double rounding, std::vector<double> &places);
-
-// Whether three atoms are on a line, or four in a plane, to the rounding of their lengths.
-bool are_flat(std::int64_t n, const double *squares);
-
 // Whether three or four atoms that can move, each bonded to all others, are on a line or in a plane, by their lengths,
-// or a ring is held in a plane.
-bool has_dependent_lengths(const holonomic::Shape &shape, const double *w, const double *lengths);
+// or a ring is held in a plane. tolerance: by what part of them lengths may be adjusted (fit.hpp).
+bool has_dependent_lengths(const holonomic::Shape &shape, const double *w, const double *lengths, double tolerance);
 
 struct Cliques {
     std::vector<std::int64_t> sizes, atoms;  // of the bodies; atoms counted as the list counts them
     std::vector<double> places;              // [..][3]
     std::vector<std::int64_t> bonds;         // of the list, in molecules that have one of these bodies, ascending
+    std::vector<std::int64_t> shared;        // of the list, in groups that depend and share atoms with bodies
+    LinearGroups linear;                     // on a line or in a plane, which share atoms, and bonds of length zero
+    std::vector<std::int64_t> linear_bonds;  // of those above, in molecules with such groups, ascending
+    double adjusted = 0;                     // by which part of it a body changes a length, at most
+    std::int64_t adjusted_bond = -1;         // of the list
 };
 
-// Bond k of the list has the length lengths[k % n_lengths]. Throws Error, naming a bond, where lengths of five atoms or
-// more are those of no places in space.
-Cliques find_cliques(const Masses &masses, const BondList &list, const double *lengths, std::int64_t n_lengths);
+// Bond k of the list has the length lengths[k % n_lengths]. Throws Error, naming a bond and the atoms, where lengths
+// are those of no places in space by more than the tolerance. left_out: of each bond, or empty: one that others imply,
+// and that is compared with them alone (implied.hpp). With it, groups that share atoms are linear ones.
+Cliques find_cliques(const Masses &masses, const BondList &list, const double *lengths, std::int64_t n_lengths,
+                     double tolerance, const std::vector<unsigned char> &left_out = {});
 
 }  // namespace holonomic::rigid

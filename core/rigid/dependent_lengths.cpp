@@ -1,8 +1,10 @@
 // Whether lengths of a shape depend on each other: asked once for each kind of molecule.
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "core/rigid/cliques.hpp"
+#include "core/rigid/fit.hpp"
 #include "core/rigid/flat_ring.hpp"
 
 namespace holonomic::rigid {
@@ -52,24 +54,37 @@ void for_common(const Partners &partners, std::int32_t i, std::int32_t j, std::i
         if (partner.first > after && partners.square(other, partner.first) >= 0) each(partner.first);
 }
 
+bool may_be_straight(double a, double b, double c) {
+    const double longest = std::max(a, std::max(b, c));
+    return 2 * longest >= 0.9 * (a + b + c);
+}
+
+// Whether all distances of these atoms depend on each other, or fit no place in space.
+template <std::size_t n>
+bool depend(const Partners &partners, const std::int32_t (&atoms)[n], double tolerance) {
+    Distances wanted(n);
+    for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t j = 0; j < n; ++j)
+            if (i != j)
+                wanted.at(static_cast<std::int64_t>(i), static_cast<std::int64_t>(j)) =
+                    std::sqrt(partners.square(atoms[i], atoms[j]));
+    return look_at(wanted, tolerance).kind != Group::independent;
+}
+
 // Three or four atoms, of which i is the lowest.
-bool is_lowest_of_flat(const Partners &partners, std::int32_t i) {
+bool is_lowest_of_flat(const Partners &partners, std::int32_t i, double tolerance) {
     bool found = false;
     const auto square = [&](std::int32_t a, std::int32_t b) { return partners.square(a, b); };
     for (const auto &partner : partners.of(i)) {
         const std::int32_t j = partner.first;
         if (j < i) continue;
-        const double ij = square(i, j);
         for_common(partners, i, j, j, [&](std::int32_t k) {
             if (found) return;
-            const double ik = square(i, k), jk = square(j, k), three[9] = {0, ij, ik, ij, 0, jk, ik, jk, 0};
-            found = are_flat(3, three);
+            found = may_be_straight(std::sqrt(square(i, j)), std::sqrt(square(i, k)), std::sqrt(square(j, k))) &&
+                    depend(partners, {i, j, k}, tolerance);
             if (found) return;
             for_common(partners, j, k, k, [&](std::int32_t l) {
-                const double il = square(i, l), jl = square(j, l), kl = square(k, l);
-                if (il < 0) return;
-                const double four[16] = {0, ij, ik, il, ij, 0, jk, jl, ik, jk, 0, kl, il, jl, kl, 0};
-                found = found || are_flat(4, four);
+                found = found || (square(i, l) > 0 && depend(partners, {i, j, k, l}, tolerance));
             });
         });
         if (found) return true;
@@ -79,16 +94,16 @@ bool is_lowest_of_flat(const Partners &partners, std::int32_t i) {
 
 }  // namespace
 
-bool has_dependent_lengths(const holonomic::Shape &shape, const double *w, const double *lengths) {
+bool has_dependent_lengths(const holonomic::Shape &shape, const double *w, const double *lengths, double tolerance) {
     if (shape.form == Form::chain || shape.form == Form::tree || (shape.form == Form::ring && shape.n_bonds > 3))
         return false;
     const Partners partners(shape, w, lengths);
     std::int64_t steps = steps_for_rings(shape.n_bonds);
     for (std::int32_t i = 0; i < shape.n_atoms; ++i) {
-        if (is_lowest_of_flat(partners, i)) return true;
+        if (is_lowest_of_flat(partners, i, tolerance)) return true;
         for (const auto &partner : partners.of(i))
             if (i < partner.first && partners.of(i).size() > 3 &&
-                FlatRing<Partners>(partners, i, partner.first, steps).find())
+                FlatRing<Partners>(partners, i, partner.first, tolerance, steps).find())
                 return true;
     }
     return false;

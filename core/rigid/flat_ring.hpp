@@ -9,6 +9,8 @@
 #include <limits>
 #include <vector>
 
+#include "core/rigid/fit.hpp"
+
 namespace holonomic::rigid {
 
 // Graph: for_partners(atom, each) calls each(partner); with_fewer(i, j) is the one that has fewer of them; square(i, j)
@@ -19,13 +21,27 @@ public:
     using Atom = typename Graph::Atom;
 
     // From its lowest atom on. steps: how many may still be looked at.
-    FlatRing(const Graph &graph, Atom first, Atom second, std::int64_t &steps)
-        : graph_(graph), ring_{first, second}, steps_(steps) {}
+    FlatRing(const Graph &graph, Atom first, Atom second, double tolerance, std::int64_t &steps)
+        : graph_(graph), ring_{first, second}, tolerance_(tolerance), steps_(steps) {}
 
     // Then ring() goes around, and places() has [..][3] of it.
     bool find() { return extend(0); }
     const std::vector<Atom> &ring() const { return ring_; }
-    std::vector<double> places() const {
+    const std::vector<double> &places() const { return places_; }
+
+private:
+    static constexpr double circle = 6.283185307179586;
+    static constexpr std::size_t most = 16;
+    static constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+    // An angle is off by some four times what the lengths are, and these by what their decimals leave open.
+    double slack() const {
+        const std::int64_t n = static_cast<std::int64_t>(ring_.size());
+        return 40 * tolerance_ * static_cast<double>(n) + rounded(n);
+    }
+    static double rounded(std::int64_t n) { return 16 * epsilon * static_cast<double>(n); }
+
+    std::vector<double> turned() const {
         std::vector<double> x(3 * ring_.size(), 0.0);
         double angle = 0;
         for (std::size_t i = 1; i < ring_.size(); ++i) {
@@ -37,12 +53,6 @@ public:
         return x;
     }
 
-private:
-    static constexpr double circle = 6.283185307179586;
-    static constexpr std::size_t most = 16;
-
-    double tolerance() const { return 16 * std::numeric_limits<double>::epsilon() * static_cast<double>(ring_.size()); }
-
     // By how much a way from i over j to k turns at j; infinity if it is not held.
     double turn(Atom i, Atom j, Atom k) const {
         const double a = graph_.square(i, j), b = graph_.square(j, k), c = graph_.square(i, k);
@@ -50,12 +60,28 @@ private:
         return std::acos(std::max(-1.0, std::min(1.0, (c - a - b) / (2 * std::sqrt(a * b)))));
     }
 
-    bool closes(double turned) const {
+    bool closes(double turned) {
         const std::size_t n = ring_.size();
         if (n < 6) return false;
         const double whole =
             turned + turn(ring_[n - 2], ring_[n - 1], ring_[0]) + turn(ring_[n - 1], ring_[0], ring_[1]);
-        return std::fabs(whole - circle) <= tolerance();
+        return std::fabs(whole - circle) <= slack() && fits_plane(whole - circle);
+    }
+
+    // Angles of full digits that turn by more are independent.
+    bool fits_plane(double excess) {
+        const std::int64_t n = static_cast<std::int64_t>(ring_.size());
+        Distances wanted(n);
+        for (std::int64_t i = 0; i < n; ++i)
+            for (std::int64_t j = 0; j < i; ++j) {
+                const double square =
+                    graph_.square(ring_[static_cast<std::size_t>(i)], ring_[static_cast<std::size_t>(j)]);
+                if (square > 0) wanted.at(i, j) = wanted.at(j, i) = std::sqrt(square);
+            }
+        places_ = turned();
+        const Misfit misfit = fit_places(wanted, 2, places_);
+        const Decimals decimals(wanted, tolerance_);
+        return decimals.are_full() ? excess <= rounded(n) && misfit.error <= decimals.most() : decimals.allow(misfit);
     }
 
     bool extend(double turned) {
@@ -66,7 +92,7 @@ private:
         graph_.for_partners(graph_.with_fewer(last, before), [&](Atom atom) {
             if (found || atom < ring_[0] || std::find(ring_.begin(), ring_.end(), atom) != ring_.end()) return;
             const double next = turned + turn(before, last, atom);
-            if (next > circle + tolerance()) return;
+            if (next > circle + slack()) return;
             ring_.push_back(atom);
             found = extend(next);
             if (!found) ring_.pop_back();
@@ -76,6 +102,8 @@ private:
 
     const Graph &graph_;
     std::vector<Atom> ring_;
+    std::vector<double> places_;
+    const double tolerance_;
     std::int64_t &steps_;
 };
 

@@ -82,7 +82,8 @@ struct PositionsWork final : Work {
         }
         for (std::int32_t i = 0; i < s.n_held; ++i) {
             const Part &part = s.parts[at(s.part_of[at(i)])];
-            if (size_of(system.now.x[i] - system.now.q[part.first_node]) > most_stretched * system.body(part).extent)
+            if (system.body(part).is_rigid &&
+                size_of(system.now.x[i] - system.now.q[part.first_node]) > most_stretched * system.body(part).extent)
                 return true;
         }
         return false;

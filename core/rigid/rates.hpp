@@ -33,8 +33,8 @@ void for_rates(const System &system, const PairVector *v, const BoxRate *rate, c
     const PairVector none = {as_pair(0), as_pair(0), as_pair(0)};
     for (std::int32_t k = 0; k < s.n_rows; ++k) {
         const std::int32_t bond = s.bond_of_row[static_cast<std::size_t>(k)];
-        if (bond >= 0) {
-            const PairVector d = system.bond_vector(system.now, bond), u = bond_rate(system, k, v, rate, d);
+        if (s.is_distance(k)) {
+            const PairVector d = system.distance(system.now, k), u = bond_rate(system, k, v, rate, d);
             each(k, bond, true, d, d, u, u);
             continue;
         }

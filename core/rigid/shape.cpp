@@ -11,9 +11,6 @@ namespace {
 
 std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
-// A bond's length and the body's own distance between its atoms: equal to what a file's digits allow.
-constexpr double same_length = 1e-6;
-
 struct Row {
     std::vector<Entry> entries;
     std::int32_t bond;
@@ -64,6 +61,7 @@ private:
     }
 
     void check_within(const Bond &bond, std::int32_t number) const {
+        if (s_.by_lengths) return;  // fit.hpp has done it
         const Part &part = s_.parts[at(s_.part_of[at(bond.i)])];
         const Body &body = body_of(part);
         double square = 0;
@@ -76,26 +74,44 @@ private:
             throw Unsolvable{Unsolvable::length_in_body, number};
     }
 
+    bool are_of_one_part(const Bond &bond) const {
+        return bond.i < s_.n_held && bond.j < s_.n_held && s_.part_of[at(bond.i)] == s_.part_of[at(bond.j)];
+    }
+    bool is_within_body(const Bond &bond) const {
+        return are_of_one_part(bond) && body_of(s_.parts[at(s_.part_of[at(bond.i)])]).is_rigid;
+    }
+
+    void add_distance(const Bond &bond, std::int32_t number) {
+        Row row{{}, number, as_pair(bond.length) * as_pair(bond.length), bond.length * bond.length, bond.length};
+        add_end(bond.j, 1, row.entries);
+        add_end(bond.i, -1, row.entries);
+        if (are_of_one_part(bond)) {  // of a loose one: each node once
+            const std::size_t half = row.entries.size() / 2;
+            for (std::size_t e = 0; e < half; ++e)
+                row.entries[e].factor = row.entries[e].factor + row.entries[half + e].factor;
+            row.entries.erase(row.entries.begin() + static_cast<std::ptrdiff_t>(half), row.entries.end());
+            row.entries.erase(row.entries.begin());  // the centre
+            if (row.entries.empty()) throw Unsolvable{Unsolvable::too_many, number};
+        }
+        rows_.push_back(std::move(row));
+    }
+
     void make_rows() {
         for (std::size_t k = 0; k < s_.bonds.size(); ++k) {
             Bond &bond = s_.bonds[k];
+            if (bond.row == held_elsewhere) continue;
             bond.row = -1;
-            if (bond.i < s_.n_held && bond.j < s_.n_held && s_.part_of[at(bond.i)] == s_.part_of[at(bond.j)]) {
+            if (is_within_body(bond)) {
                 check_within(bond, static_cast<std::int32_t>(k));
                 continue;
             }
-            Row row{{},
-                    static_cast<std::int32_t>(k),
-                    as_pair(bond.length) * as_pair(bond.length),
-                    bond.length * bond.length,
-                    bond.length};
-            add_end(bond.j, 1, row.entries);
-            add_end(bond.i, -1, row.entries);
-            rows_.push_back(std::move(row));
+            add_distance(bond, static_cast<std::int32_t>(k));
             s_.longest = std::max(s_.longest, bond.length);
         }
+        for (const Bond &bond : s_.hidden) add_distance(bond, -1);
         for (const Part &part : s_.parts) {
             const Body &body = body_of(part);
+            if (!body.is_rigid) continue;
             const std::int32_t u = part.first_node + 1;
             for (std::int32_t p = 0; p < body.rank; ++p)
                 for (std::int32_t q = p; q < body.rank; ++q) {
@@ -128,6 +144,7 @@ private:
             if (atom >= s_.n_held) return;
             const Part &part = s_.parts[at(s_.part_of[at(atom)])];
             const Body &body = body_of(part);
+            if (!body.is_rigid) return;
             for (const Step &step : nearest_steps(body, atom - part.first_atom)) {
                 s_.steps.push_back({part.first_atom + step.atom, part.first_atom + step.before});
                 seen[at(part.first_atom + step.atom)] = true;
@@ -141,10 +158,24 @@ private:
             }
         };
         reach(0, -1);
-        for (std::size_t next = 0; next < found.size(); ++next) {
-            const std::int32_t atom = found[next];
-            if (atom >= s_.n_movable) continue;
-            for (const std::int32_t partner : partners[at(atom)]) reach(partner, atom);
+        std::size_t next = 0;
+        const auto follow_bonds = [&] {
+            for (; next < found.size(); ++next) {
+                const std::int32_t atom = found[next];
+                if (atom >= s_.n_movable) continue;
+                for (const std::int32_t partner : partners[at(atom)]) reach(partner, atom);
+            }
+        };
+        follow_bonds();
+        for (std::size_t k = 0; k < s_.links.size(); ++k) {
+            const Step &link = s_.links[k];
+            if (seen[at(link.atom)] == seen[at(link.before)]) continue;
+            if (seen[at(link.atom)])
+                reach(link.before, link.atom);
+            else
+                reach(link.atom, link.before);
+            follow_bonds();
+            k = static_cast<std::size_t>(-1);  // those before it may lead on
         }
         if (static_cast<std::int32_t>(found.size()) < s_.n_atoms) throw Unsolvable{Unsolvable::unconnected, -1};
     }
@@ -256,9 +287,10 @@ void complete(Shape &shape, const std::vector<Body> &bodies) {
     std::int64_t freedoms = 3 * (shape.n_movable - shape.n_held), rows = 0;
     for (const Part &part : shape.parts) {
         const Body &body = bodies[static_cast<std::size_t>(part.body)];
-        freedoms += body.rank == 1 ? 5 : 6;
+        freedoms += !body.is_rigid ? 3 * (1 + body.rank) : body.rank == 1 ? 5 : 6;
     }
     for (const Bond &bond : shape.bonds) rows += bond.row >= 0;
+    rows += static_cast<std::int64_t>(shape.hidden.size());
     const bool free = shape.n_atoms == shape.n_movable;
     if (rows > 0 && rows > freedoms - (free ? 5 : 0)) throw Unsolvable{Unsolvable::too_many, -1};
 }

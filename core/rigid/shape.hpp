@@ -19,6 +19,12 @@ struct Part {
     std::int32_t first_atom, first_node;
 };
 
+// A bond's length and the distance between its atoms in a body that was given by places: equal to what digits allow.
+constexpr double same_length = 1e-6;
+
+// Row of a bond that is none, as a loose part holds it by other distances.
+constexpr std::int32_t held_elsewhere = -2;
+
 // A bond as it was given, of atoms numbered within the molecule.
 struct Bond {
     std::int32_t i, j;
@@ -51,6 +57,8 @@ struct Shape {
     std::vector<double> w;              // [n_nodes]
     std::vector<double> mass;           // [n_atoms], 0: a site; of fixed atoms 0 too
     std::vector<Bond> bonds;
+    std::vector<Bond> hidden;   // distances that are held, but are no bonds of the caller's
+    std::vector<Step> links;    // between which nearest images are taken where no bond is
     std::vector<Step> steps;    // the way through the molecule, from its first atom
     bool by_lengths = false;    // bonds within bodies have multipliers (within.hpp)
     bool is_lone_body = false;  // one that plain doubles do for, without bonds but within it
@@ -59,13 +67,17 @@ struct Shape {
     // rows in the order of elimination
     std::vector<std::int32_t> entry_start;  // [n_rows + 1]
     std::vector<Entry> entries;
-    std::vector<std::int32_t> bond_of_row;  // -1: of a body
+    std::vector<std::int32_t> bond_of_row;  // -1: of a body, or of a hidden distance
     std::vector<DoublePair> target;         // [n_rows] a^2, L_p^2 or 0
     std::vector<double> scale;              // [n_rows] what the row is compared with: a^2, L_p L_q
     std::vector<double> reach;              // [n_rows] by how much it changes with a coordinate: a, L_p + L_q
     std::vector<Product> products;
     std::vector<std::int32_t> column_start, row;  // the factor's pattern below its diagonal
 
+    // Whether a row is d.d of a distance; else it is of a body.
+    bool is_distance(std::int32_t k) const {
+        return entries[static_cast<std::size_t>(entry_start[static_cast<std::size_t>(k)])].other < 0;
+    }
     std::int64_t bytes() const;
 };
 

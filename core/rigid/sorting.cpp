@@ -7,6 +7,7 @@
 
 #include "core/molecules/chains.hpp"
 #include "core/rigid/bodies.hpp"
+#include "core/rigid/linear.hpp"
 
 namespace holonomic {
 
@@ -50,15 +51,17 @@ class Sorting {
 public:
     Sorting(const Chains &chains, const Masses &masses, const AtomUse &use, std::int64_t n_bodies,
             const std::int64_t *sizes, const std::int64_t *atoms, std::int64_t offset, std::int64_t n_bonds,
-            const std::int64_t *pairs)
+            const std::int64_t *pairs, const rigid::LooseParts *parts)
         : chains_(chains), masses_(masses), use_(use), base_(chains.base), n_bodies_(n_bodies), n_bonds_(n_bonds),
-          offset_(offset), sizes_(sizes), given_atoms_(atoms), given_pairs_(pairs), joined_(at(n_bodies)) {}
+          offset_(offset), sizes_(sizes), given_atoms_(atoms), given_pairs_(pairs), parts_(parts),
+          joined_(at(n_bodies)) {}
 
     std::vector<rigid::Given> sort(const double *places, const double *lengths) {
         take_bodies();
         take_bonds();
         make_molecules(places);
         add_bonds(lengths);
+        if (parts_) add_distances();
         return std::move(molecules_);
     }
 
@@ -147,6 +150,7 @@ private:
             }
             rigid::Given &given = molecules_[at(molecule_of_body_[root])];
             given.sizes.push_back(static_cast<std::int32_t>(sizes_[b]));
+            if (parts_) given.loose.push_back(parts_->loose[at(b)]);
             for (std::int64_t a = 0; a < sizes_[b]; ++a, ++next, places += 3) {
                 const std::int64_t atom = *next - base_ + offset_;
                 local_[atom] = append(given, atom);
@@ -216,9 +220,29 @@ private:
                 fixed[m].emplace(atom, append(given, atom));
                 *next++ = fixed[m].at(atom);
             }
-            given.bonds.push_back({ends[0], ends[1], lengths[k], -1});
+            const bool held = parts_ && std::binary_search(parts_->held.begin(), parts_->held.end(), k);
+            given.bonds.push_back({ends[0], ends[1], lengths[k], held ? rigid::held_elsewhere : -1});
             given.bond_numbers.push_back(chains_.n_bonds() + k);
         }
+    }
+
+    void add_distances() {
+        const auto local = [&](std::int64_t given) {
+            const auto found = local_.find(given - base_ + offset_);
+            return found == local_.end() ? -1 : found->second;
+        };
+        for (const auto &its : parts_->hidden) {
+            rigid::Given &given = molecules_[at(molecule_of_atom(its.i - base_ + offset_))];
+            given.hidden.push_back({local(its.i), local(its.j), its.length, -1});
+        }
+        for (const auto &link : parts_->links) {
+            const std::int32_t i = local(link.first), j = local(link.second);
+            if (i >= 0 && j >= 0)
+                molecules_[at(molecule_of_atom(link.first - base_ + offset_))].links.push_back({i, j});
+        }
+        for (rigid::Given &given : molecules_)
+            if (std::all_of(given.loose.begin(), given.loose.end(), [](const auto &loose) { return loose.is_rigid(); }))
+                given.loose.clear();
     }
 
     const Chains &chains_;
@@ -227,6 +251,7 @@ private:
     const int base_;
     const std::int64_t n_bodies_, n_bonds_, offset_;
     const std::int64_t *const sizes_, *const given_atoms_, *const given_pairs_;
+    const rigid::LooseParts *const parts_;
     Joined joined_;  // bodies, then atoms of none
     std::unordered_map<std::int64_t, std::size_t> group_of_;
     std::vector<std::int64_t> others_;  // atoms that can move and are in no body
@@ -240,9 +265,14 @@ private:
 // The molecules of one call, or of one copy of its molecules, whose atoms stand `offset` further on.
 std::vector<rigid::Given> Chains::sort_rigid(std::int64_t n_bodies, const std::int64_t *sizes,
                                              const std::int64_t *atoms, std::int64_t offset, const double *places,
-                                             std::int64_t n_bonds, const std::int64_t *pairs,
-                                             const double *lengths) const {
-    return Sorting(*this, masses_, use_, n_bodies, sizes, atoms, offset, n_bonds, pairs).sort(places, lengths);
+                                             std::int64_t n_bonds, const std::int64_t *pairs, const double *lengths,
+                                             const rigid::LooseParts *parts) const {
+    if (!parts && rigid::share_atoms(n_bodies, sizes, atoms)) {
+        const rigid::JoinedBodies joined = rigid::join_bodies(n_bodies, sizes, atoms, places, n_bonds, pairs, lengths);
+        return sort_rigid(static_cast<std::int64_t>(joined.sizes.size()), joined.sizes.data(), joined.atoms.data(),
+                          offset, joined.places.data(), n_bonds, pairs, lengths, &joined.parts);
+    }
+    return Sorting(*this, masses_, use_, n_bodies, sizes, atoms, offset, n_bonds, pairs, parts).sort(places, lengths);
 }
 
 }  // namespace holonomic

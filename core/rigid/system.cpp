@@ -149,8 +149,12 @@ void System::read(const AtomArray &r, const Box &box, const Place &place, const 
 }
 
 PairVector System::bond_vector(const Conformation &where, std::int32_t bond) const {
-    const std::int32_t row = s_.bonds[at(bond)].row;
-    PairVector d = where.shift[bond];
+    return distance(where, s_.bonds[at(bond)].row);
+}
+
+PairVector System::distance(const Conformation &where, std::int32_t row) const {
+    const std::int32_t bond = s_.bond_of_row[at(row)];
+    PairVector d = bond < 0 ? zero() : where.shift[bond];
     for (std::int32_t e = s_.entry_start[at(row)]; e < s_.entry_start[at(row + 1)]; ++e)
         d = d + s_.entries[at(e)].factor * where.q[s_.entries[at(e)].node];
     return d;
@@ -158,11 +162,11 @@ PairVector System::bond_vector(const Conformation &where, std::int32_t bond) con
 
 void System::differentiate(const Conformation &where) const {
     for (std::int32_t k = 0; k < s_.n_rows; ++k) {
-        const std::int32_t bond = s_.bond_of_row[at(k)];
-        const PairVector d = bond >= 0 ? bond_vector(where, bond) : zero();
+        const bool is_distance = s_.is_distance(k);
+        const PairVector d = is_distance ? distance(where, k) : zero();
         for (std::int32_t e = s_.entry_start[at(k)]; e < s_.entry_start[at(k + 1)]; ++e) {
             const Entry &entry = s_.entries[at(e)];
-            where.gradient[e] = bond >= 0 ? entry.factor * d : where.q[entry.other];
+            where.gradient[e] = is_distance ? entry.factor * d : where.q[entry.other];
         }
     }
 }
@@ -223,8 +227,8 @@ double System::residuals(const Conformation &where, DoublePair *to, std::int32_t
         const std::int32_t bond = s_.bond_of_row[at(k)];
         DoublePair value;
         bool half = true;
-        if (bond >= 0) {
-            const PairVector d = bond_vector(where, bond);
+        if (s_.is_distance(k)) {
+            const PairVector d = distance(where, k);
             value = dot(d, d) - s_.target[at(k)];
         } else {
             const Entry &entry = s_.entries[at(s_.entry_start[at(k)])];
@@ -261,10 +265,9 @@ void System::add_virial(const Conformation &where, const DoublePair *multipliers
             for (int j = i; j < 3; ++j) *to++ -= 0.5 * s * (u[i] * v[j] + u[j] * v[i]);
     };
     for (std::int32_t k = 0; k < s_.n_rows; ++k) {
-        const std::int32_t bond = s_.bond_of_row[at(k)];
         const double m = factor * rounded(multipliers[k]);
-        if (bond >= 0) {
-            const PairVector d = bond_vector(where, bond);
+        if (s_.is_distance(k)) {
+            const PairVector d = distance(where, k);
             add(m, d, d);
         } else {
             const Entry &entry = s_.entries[at(s_.entry_start[at(k)])];

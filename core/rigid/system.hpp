@@ -49,6 +49,9 @@ public:
     // d of a bond, between the nodes' places.
     PairVector bond_vector(const Conformation &at, std::int32_t bond) const;
 
+    // The same of a row, which is of a distance.
+    PairVector distance(const Conformation &at, std::int32_t row) const;
+
     // Adds to z multiples -w t of gradients so that sum of gradient.z + c = 0 in each row; t is written.
     Outcome project(const Conformation &at, const DoublePair *c, PairVector *z, DoublePair *t) const;
     // Moves q along the gradients of the reference until each row is fulfilled to `tolerance` of its scale. Where

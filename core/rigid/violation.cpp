@@ -63,10 +63,15 @@ public:
                          d = size_of(system.bond_vector(system.now, static_cast<std::int32_t>(k)));
             each(std::fabs((d - a) * (d + a)) / (a * a), static_cast<std::int64_t>(k), std::int64_t{-1});
         }
+        for (std::int32_t k = 0; !s.hidden.empty() && k < s.n_rows; ++k) {
+            if (s.bond_of_row[at(k)] >= 0 || !s.is_distance(k)) continue;
+            const PairVector d = system.distance(system.now, k);
+            each(std::fabs(rounded(dot(d, d) - s.target[at(k)])) / s.scale[at(k)], std::int64_t{-1}, place.atoms[0]);
+        }
         for (const Part &part : s.parts) {
             const Body &body = system.body(part);
             const PairVector *const u = system.now.q + part.first_node + 1;
-            for (std::int32_t p = 0; p < body.rank; ++p)
+            for (std::int32_t p = 0; body.is_rigid && p < body.rank; ++p)
                 for (std::int32_t q = p; q < body.rank; ++q) {
                     const DoublePair off = dot(u[p], u[q]) - (p == q ? body.square[p] : as_pair(0));
                     each(std::fabs(off.hi) / body.square[0].hi, std::int64_t{-1}, place.atoms[part.first_atom]);

@@ -25,6 +25,7 @@ def _again(of: Any, masses: np.ndarray, fixed: Optional[np.ndarray], added: Adde
     molecules = of.__new__(of)
     Molecules.__init__(molecules, masses, fixed)
     molecules.memory_limit = settings["memory_limit"]  # what is added has to fit
+    molecules.length_tolerance = settings["length_tolerance"]  # and rigid groups are adjusted as they were
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", MasslessWarning)
         added.repeat(molecules)
@@ -167,6 +168,27 @@ class Bonds:
             self._handle, n_molecules, n_atoms, first_atom, len(sizes), address(sizes), address(atoms), address(where),
             len(bonds), address(bonds), address(lengths)))
         self._noted("add_rigid_molecules", n_molecules, n_atoms, *_apart(sizes, atoms, where), bonds, lengths, first_atom)
+
+    def add_linear(self, atoms: Bodies, coefficients: Any, bonds: Pairs = (), lengths: Floats = ()) -> None:
+        """Adds linear relations among atoms, sum_i c_i r_i = 0, and bonds of the molecules in which these are.
+
+        atoms         the atoms of each relation, a list of lists; an atom of mass 0 is a massless site
+        coefficients  those of each relation, a list of lists; they add up to 0
+        bonds         (n, 2) integers, bonds of these molecules
+        lengths       (n,) lengths, or one number for all
+
+        A site in the middle of two atoms: ``add_linear([[0, 1, 2]], [[0.5, 0.5, -1]])``; two atoms that are one point:
+        ``add_linear([[0, 1]], [[1, -1]])``. docs/rigid.md.
+        """
+        groups = [integers(group, "atoms") for group in atoms]
+        numbers_of = [numbers(c, len(group), "coefficients", "atom") for c, group in zip(coefficients, groups)]
+        if not groups or len(groups) != len(coefficients):
+            raise ArgumentError(f"there are atoms of {len(groups)} relations and coefficients of {len(coefficients)}")
+        sizes, all_atoms, c = np.array([len(group) for group in groups], np.int64), np.concatenate(groups), np.concatenate(numbers_of)
+        bonds, lengths = self._at_bodies(bonds, lengths)
+        ask_to_add(library.hol_chains_add_linear(self._handle, len(sizes), address(sizes), address(all_atoms), address(c),
+                                                 len(bonds), address(bonds), address(lengths)))
+        self._noted("add_linear", groups, numbers_of, bonds, lengths)
 
     @staticmethod
     def _bodies(bodies: Any, places: Any) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:

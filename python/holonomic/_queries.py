@@ -71,6 +71,20 @@ class Queries(Bonds):
         return library.hol_chains_n_kinds(self._handle)
 
     @property
+    def adjustment(self) -> Tuple[float, Optional[int]]:
+        """By which part of it the length of a rigid group was adjusted that was adjusted most, and the number of its bond:
+        no places in space have quite the lengths of a file's decimals. (0.0, None) if none was."""
+        largest, bond = c_double(), c_int64()
+        ask(library.hol_chains_adjustment(self._handle, byref(largest), byref(bond)))
+        return largest.value, None if bond.value < 0 else bond.value
+
+    def implied(self) -> np.ndarray:
+        """Which distances others imply, (n_bonds,) of bool: they are in no equation, and their multipliers are 0."""
+        implied = np.empty(self._n_bonds, np.uint8)
+        ask(library.hol_chains_implied(self._handle, address(implied)))
+        return implied.astype(bool)
+
+    @property
     def memory(self) -> int:
         """Memory that the set of molecules occupies in the library, in bytes."""
         return library.hol_chains_memory(self._handle)

@@ -41,7 +41,7 @@ class Settings(Queries):
     """The part of Molecules that is set. Settings must not be changed while another thread is in a call."""
 
     __slots__ = ("_box", "_reference_box", "_box_rate", "_active", "_threads", "_tolerance", "_max_iterations", "_checks",
-                 "_memory_limit", "_keep_outcomes", "_find_bodies")
+                 "_length_tolerance", "_memory_limit", "_keep_outcomes", "_find_bodies")
 
     def __init__(self, masses: Floats, fixed: Any = None):
         super().__init__(masses, fixed)
@@ -52,6 +52,7 @@ class Settings(Queries):
         self._threads = 1
         self._tolerance = 0.0
         self._max_iterations = 50
+        self._length_tolerance = 1e-3
         self._checks = "at start"
         self._memory_limit = 0
         self._keep_outcomes = False
@@ -59,8 +60,8 @@ class Settings(Queries):
 
     def _settings(self) -> dict:
         """All of them, in an order in which they can be set."""
-        names = ("box", "reference_box", "box_rate", "threads", "tolerance", "max_iterations", "memory_limit", "checks",
-                 "keep_outcomes", "find_bodies", "active")
+        names = ("box", "reference_box", "box_rate", "threads", "tolerance", "max_iterations", "length_tolerance",
+                 "memory_limit", "checks", "keep_outcomes", "find_bodies", "active")
         return {name: getattr(self, name) for name in names}
 
     @_ArraySetting
@@ -155,6 +156,17 @@ class Settings(Queries):
         count = integer(count, "max_iterations")
         ask(library.hol_chains_set_max_iterations(self._handle, count))
         self._max_iterations = count
+
+    @property
+    def length_tolerance(self) -> float:
+        """By which part of them lengths of rigid groups may be adjusted, so that they are those of places in space: 1e-3 by
+        default, at most 0.01; for what is added later."""
+        return self._length_tolerance
+
+    @length_tolerance.setter
+    def length_tolerance(self, tolerance: float) -> None:
+        ask(library.hol_chains_set_length_tolerance(self._handle, tolerance))
+        self._length_tolerance = tolerance
 
     @property
     def memory_limit(self) -> int:

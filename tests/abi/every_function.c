@@ -193,7 +193,12 @@ static void along(hol_chains *both, const double *r)
 /* The same molecules from far off, what is left of each bond, and a status for each molecule. */
 static void crude(hol_chains *both, const double *r)
 {
-    double moved[21], length[6], rate[6], v[21] = {0};
+    double moved[21], length[6], rate[6], v[21] = {0}, error = -1;
+    unsigned char implied[6] = {7};
+    const double middle[3] = {0.5, 0.5, -1};
+    const int64_t three = 3, site[3] = {0, 1, 2};
+    int64_t bond = 7;
+    hol_chains *relations;
     int status[2] = {-1, -1}, iterations[2] = {-1, -1}, k;
     hol_report report;
     const hol_const_view at = hol_const_view_rows(moved), rates = hol_const_view_rows(v);
@@ -208,6 +213,15 @@ static void crude(hol_chains *both, const double *r)
     SUCCEEDS(hol_residuals_view(both, &at, &rates, NULL, rate));
     NEAR(rate[3], 3);
     SUCCEEDS(hol_chains_set_memory_limit(both, 1 << 20));
+    SUCCEEDS(hol_chains_set_length_tolerance(both, 1e-3));
+    SUCCEEDS(hol_chains_create(3, mass + 1, &relations));
+    SUCCEEDS(hol_chains_add_linear(relations, 1, &three, site, middle, 0, NULL, NULL));
+    EXPECT(hol_chains_degrees_of_freedom(relations, 3) == 6);
+    hol_chains_destroy(relations);
+    SUCCEEDS(hol_chains_adjustment(both, &error, &bond));
+    EXPECT(error == 0 && bond == -1);
+    SUCCEEDS(hol_chains_implied(both, implied));
+    EXPECT(implied[0] == 0);
     SUCCEEDS(hol_chains_set_outcomes(both, 1));
     SUCCEEDS(hol_impose(both, moved, &report));
     EXPECT(report.n_corrected == 1 && report.n_failed == 0 && report.iterations > 1);

@@ -257,7 +257,7 @@ static void bad_bodies_are_refused_and_change_nothing(void **state)
     const double x[12] = {0, 0, 0, 1, 0, 0, 2, 0, 0, 1, 1, 0}, same[9] = {1, 1, 1, 1, 1, 1, 1, 1, 1};
     const int64_t two = 2, three = 3, four = 4, one = 1;
     const int64_t list[4] = {0, 1, 2, 3}, massless[2] = {3, 4}, fixed[2] = {0, 5}, twice[3] = {0, 1, 0};
-    const int64_t out[2] = {0, 8}, both[4] = {0, 1, 1, 2}, two_bodies[2] = {2, 2}, lone[2] = {0, 3};
+    const int64_t out[2] = {0, 8}, both[4] = {0, 1, 1, 0}, two_bodies[2] = {2, 2}, lone[2] = {0, 3};
     double bad[9] = {0, 0, 0, 1, 0, 0, 2, 0, NAN};
     hol_chains *chains;
     CHECK(hol_chains_create(8, m, &chains));
@@ -271,7 +271,8 @@ static void bad_bodies_are_refused_and_change_nothing(void **state)
     CHECK_FAILS(HOL_ERR_VALUE, hol_chains_add_rigid(chains, 1, &two, fixed, x, 0, NULL, NULL));
     assert_message_names("atom 5");
     CHECK_FAILS(HOL_ERR_SHARED_ATOM, hol_chains_add_rigid(chains, 1, &three, twice, x, 0, NULL, NULL));
-    CHECK_FAILS(HOL_ERR_SHARED_ATOM, hol_chains_add_rigid(chains, 2, two_bodies, both, x, 0, NULL, NULL));
+    CHECK_FAILS(HOL_ERR_VALUE, hol_chains_add_rigid(chains, 2, two_bodies, both, x, 0, NULL, NULL));
+    assert_message_names("in two bodies, at the distances");
     CHECK_FAILS(HOL_ERR_INDEX, hol_chains_add_rigid(chains, 1, &two, out, x, 0, NULL, NULL));
     CHECK_FAILS(HOL_ERR_VALUE, hol_chains_add_rigid(chains, 1, &three, list, same, 0, NULL, NULL));
     assert_message_names("at one point");

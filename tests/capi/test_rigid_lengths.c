@@ -179,7 +179,7 @@ static void lengths_that_disagree_are_named_and_nothing_is_added(void **state)
     part p = make_clique(6, 3, 9);
     hol_chains *chains;
     int64_t bond = -1;
-    p.length[4] *= 1.01;
+    p.length[4] *= 1.1;
     CHECK(hol_chains_create(6, p.mass, &chains));
     CHECK_FAILS(HOL_ERR_DEGENERATE, hol_chains_add_bonds(chains, p.n_bonds, p.pairs, p.length));
     assert_message_names("hol_chains_add_rigid");
@@ -187,9 +187,194 @@ static void lengths_that_disagree_are_named_and_nothing_is_added(void **state)
     assert_in_range(bond, 0, p.n_bonds - 1);
     assert_int_equal(hol_chains_n_bonds(chains), 0);
     assert_int_equal(hol_chains_n_molecules(chains), 0);
-    p.length[4] /= 1.01;
+    p.length[4] /= 1.1;
     CHECK(hol_chains_add_bonds(chains, p.n_bonds, p.pairs, p.length));
     CHECK_FAILS(HOL_ERR_SHARED_ATOM, hol_chains_add_bonds(chains, p.n_bonds, p.pairs, p.length));
+    hol_chains_destroy(chains);
+}
+
+/** What a file's decimals leave of all distances among places: the body as it was, but for these decimals. */
+static void check_decimals(part p, int dimension, int decimals)
+{
+    const double scale = pow(10, decimals);
+    double largest = -1, r[3 * MOST], v[3 * MOST], f[3 * MOST], x[3 * MOST];
+    int64_t bond = -1;
+    for (int k = 0; k < p.n_bonds; ++k) p.length[k] = round(p.length[k] * scale) / scale;
+    hol_chains *chains = chains_of(&p);
+    assert_int_equal(hol_chains_n_of_shape(chains, HOL_SHAPE_RIGID), 1);
+    assert_int_equal(hol_chains_degrees_of_freedom(chains, 3), dimension == 1 ? 5 : 6);
+    CHECK(hol_chains_adjustment(chains, &largest, &bond));
+    make_state(&p, r, v, f);
+    CHECK(hol_impose(chains, r, NULL));
+    for (int step = 0; step < 20; ++step) {
+        for (int e = 0; e < 3 * p.n; ++e) x[e] = r[e] + 0.001 * v[e];
+        CHECK(hol_project_positions(chains, r, x, NULL, 0.001, NULL, 0, NULL, NULL));
+        memcpy(r, x, sizeof r);
+        CHECK(hol_project_velocities(chains, r, v, NULL, NULL));
+    }
+    double worst = 0;
+    for (int k = 0; k < p.n_bonds; ++k) {
+        double square = 0;
+        for (int c = 0; c < 3; ++c) square += pow(r[3 * p.pairs[2 * k] + c] - r[3 * p.pairs[2 * k + 1] + c], 2);
+        const double error = fabs(sqrt(square) / p.length[k] - 1);
+        if (error > worst) worst = error;
+        if (k == bond) CHECK_AT_MOST(fabs(error - largest), 1e-12);
+        CHECK_AT_MOST(fabs(sqrt(square) - p.length[k]) * scale, 1.0);
+    }
+    CHECK_AT_MOST(worst - largest, 1e-12);
+    hol_chains_destroy(chains);
+}
+
+static part add_all(part p)
+{
+    p.n_bonds = 0;
+    for (int i = 0; i < p.n; ++i)
+        for (int j = 0; j < i; ++j) add_bond(&p, i, j);
+    return p;
+}
+
+static void lengths_with_the_decimals_of_a_file_are_flat_straight_and_rigid(void **state)
+{
+    (void)state;
+    const double circle = 2 * acos(-1.0);
+    part line = {.n = 3, .mass = {16, 12, 16}, .place = {-1.162, 0, 0, 0, 0, 0, 1.1634, 0, 0}};
+    part nitrate = {.n = 4, .mass = {14, 16, 16, 16}}, octahedron = {.n = 7, .mass = {31, 19, 19, 19, 19, 19, 19}};
+    part benzene = {.n = 12}, sulfate = {.n = 5, .mass = {32, 16, 16, 16, 16}};
+    for (int i = 0; i < 3; ++i) {
+        nitrate.place[3 + 3 * i] = 0.126 * cos(circle / 3 * i), nitrate.place[4 + 3 * i] = 0.126 * sin(circle / 3 * i);
+        octahedron.place[3 + 4 * i] = 0.16, octahedron.place[12 + 4 * i] = -0.16;
+    }
+    for (int i = 1; i < 5; ++i)
+        for (int x = 0; x < 3; ++x) sulfate.place[3 * i + x] = 0.149 / sqrt(3.0) * (i == 1 || i == x + 2 ? 1 : -1);
+    for (int i = 0; i < 12; ++i) {
+        benzene.mass[i] = i < 6 ? 12 : 1;
+        benzene.place[3 * i] = (i < 6 ? 0.1395 : 0.2475) * cos(circle / 6 * i);
+        benzene.place[3 * i + 1] = (i < 6 ? 0.1395 : 0.2475) * sin(circle / 6 * i);
+    }
+    for (int i = 0; i < 6; ++i) {
+        const int next = (i + 1) % 6;
+        add_bond(&benzene, i, next), add_bond(&benzene, i, (i + 2) % 6), add_bond(&benzene, i, i + 6);
+        add_bond(&benzene, i, next + 6), add_bond(&benzene, next, i + 6);
+    }
+    for (int decimals = 3; decimals < 13; ++decimals) {
+        check_decimals(add_all(line), 1, decimals);
+        check_decimals(add_all(nitrate), 2, decimals);
+        check_decimals(add_all(octahedron), 3, decimals);
+        check_decimals(add_all(sulfate), 3, decimals);
+        check_decimals(benzene, 2, decimals);
+    }
+}
+
+/** A pyramid whose height is well above its decimals stays one; with a tolerance of 0 nothing is adjusted. */
+static void what_decimals_do_not_leave_open_stays(void **state)
+{
+    (void)state;
+    part pyramid = {.n = 4, .mass = {14, 1, 1, 1}, .place = {0, 0, 0.02}};
+    for (int i = 0; i < 3; ++i)
+        pyramid.place[3 + 3 * i] = 0.1 * cos(2.1 * i), pyramid.place[4 + 3 * i] = 0.1 * sin(2.1 * i);
+    pyramid = add_all(pyramid);
+    for (int k = 0; k < 6; ++k) pyramid.length[k] = round(pyramid.length[k] * 1e5) / 1e5;
+    hol_chains *chains = chains_of(&pyramid);
+    double largest;
+    int64_t bond;
+    assert_int_equal(hol_chains_n_of_shape(chains, HOL_SHAPE_RIGID), 0);
+    CHECK(hol_chains_adjustment(chains, &largest, &bond));
+    assert_true(largest == 0 && bond == -1);
+    hol_chains_destroy(chains);
+
+    part p = make_clique(6, 3, 9);
+    for (int k = 0; k < p.n_bonds; ++k) p.length[k] = round(p.length[k] * 1e6) / 1e6;
+    CHECK(hol_chains_create(6, p.mass, &chains));
+    CHECK_FAILS(HOL_ERR_VALUE, hol_chains_set_length_tolerance(chains, 0.02));
+    CHECK_FAILS(HOL_ERR_VALUE, hol_chains_set_length_tolerance(chains, NAN));
+    CHECK(hol_chains_set_length_tolerance(chains, 0));
+    CHECK_FAILS(HOL_ERR_DEGENERATE, hol_chains_add_bonds(chains, p.n_bonds, p.pairs, p.length));
+    assert_message_names("hol_chains_set_length_tolerance");
+    CHECK(hol_chains_set_length_tolerance(chains, 1e-3));
+    CHECK(hol_chains_add_bonds(chains, p.n_bonds, p.pairs, p.length));
+    CHECK(hol_chains_set_lengths(chains, p.length)); /* the same: nothing is measured again */
+    hol_chains_destroy(chains);
+}
+
+/** Two groups of five atoms that share two: which distances others imply is told, and all are held. */
+static void all_bonds_and_angles_of_ethane(void **state)
+{
+    (void)state;
+    part p = {.n = 8, .mass = {12, 12, 1, 1, 1, 1, 1, 1}};
+    p.place[0] = -0.765, p.place[3] = 0.765;
+    for (int h = 0; h < 6; ++h) {
+        const double angle = 2 * acos(-1.0) / 3 * h + (h < 3 ? 0 : 0.4), side = h < 3 ? -1 : 1;
+        p.place[6 + 3 * h] = side * 1.13, p.place[7 + 3 * h] = 1.03 * cos(angle),
+                        p.place[8 + 3 * h] = 1.03 * sin(angle);
+    }
+    add_bond(&p, 0, 1);
+    for (int h = 0; h < 6; ++h) {
+        add_bond(&p, 0, 2 + h), add_bond(&p, 1, 2 + h);
+        add_bond(&p, 2 + h, 2 + h / 3 * 3 + (h + 1) % 3);
+    }
+    hol_chains *chains = chains_of(&p);
+    unsigned char implied[19];
+    double lambda[19], r[3 * MOST], v[3 * MOST], f[3 * MOST], g[3 * MOST];
+    int n_implied = 0;
+    assert_int_equal(hol_chains_degrees_of_freedom(chains, 3), 7);
+    assert_int_equal(hol_chains_n_of_shape(chains, HOL_SHAPE_RIGID), 0);
+    CHECK(hol_chains_implied(chains, implied));
+    make_state(&p, r, v, f);
+    CHECK(hol_forces(chains, r, NULL, f, lambda, NULL, g, HOL_WRITE, NULL));
+    for (int k = 0; k < 19; ++k) {
+        const int64_t i = p.pairs[2 * k], j = p.pairs[2 * k + 1];
+        double rate = 0;
+        n_implied += implied[k];
+        if (implied[k]) assert_true(lambda[k] == 0);
+        for (int x = 0; x < 3; ++x)
+            rate += (r[3 * j + x] - r[3 * i + x]) *
+                    ((f[3 * j + x] + g[3 * j + x]) / p.mass[j] - (f[3 * i + x] + g[3 * i + x]) / p.mass[i]);
+        CHECK_AT_MOST(fabs(rate), 1e-12);
+    }
+    assert_int_equal(n_implied, 2);
+    hol_chains_destroy(chains);
+
+    p.length[1] *= 1.1; /* of five atoms, none of which has another place */
+    CHECK(hol_chains_create(8, p.mass, &chains));
+    CHECK_FAILS(HOL_ERR_DEGENERATE, hol_chains_add_bonds(chains, 19, p.pairs, p.length));
+    assert_message_names("tolerance");
+    hol_chains_destroy(chains);
+}
+
+/** Two flat groups with a common side, as all angles of ethylene make them: the torsion is left, and nothing else. */
+static void flat_groups_that_share_atoms_turn_about_them(void **state)
+{
+    (void)state;
+    part p = {.n = 6,
+              .mass = {12, 12, 1, 1, 1, 1},
+              .place = {-0.66, 0, 0, 0.66, 0, 0, -1.2, 0.9, 0, -1.2, -0.9, 0, 1.2, 0.9, 0, 1.2, -0.9, 0}};
+    double r[3 * MOST], v[3 * MOST], f[3 * MOST], g[3 * MOST], lambda[11], length, rate;
+    unsigned char implied[11];
+    int n_implied = 0;
+    add_bond(&p, 0, 1), add_bond(&p, 2, 3), add_bond(&p, 4, 5);
+    for (int h = 2; h < 6; ++h) add_bond(&p, 0, h), add_bond(&p, 1, h);
+    hol_chains *chains = chains_of(&p);
+    assert_int_equal(hol_chains_degrees_of_freedom(chains, 3), 7);
+    CHECK(hol_chains_implied(chains, implied));
+    for (int k = 0; k < p.n_bonds; ++k) n_implied += implied[k];
+    assert_int_equal(n_implied, 6); /* 18 - 7 = 3 for each of two relations, and 5 distances */
+    make_state(&p, r, v, f);
+    CHECK(hol_forces(chains, r, NULL, f, lambda, NULL, g, HOL_WRITE, NULL));
+    for (int k = 0; k < p.n_bonds; ++k) {
+        const int64_t i = p.pairs[2 * k], j = p.pairs[2 * k + 1];
+        rate = 0;
+        if (implied[k]) assert_true(lambda[k] == 0);
+        for (int x = 0; x < 3; ++x)
+            rate += (r[3 * j + x] - r[3 * i + x]) *
+                    ((f[3 * j + x] + g[3 * j + x]) / p.mass[j] - (f[3 * i + x] + g[3 * i + x]) / p.mass[i]);
+        CHECK_AT_MOST(fabs(rate), 1e-12);
+    }
+    CHECK(hol_project_velocities(chains, r, v, NULL, NULL));
+    hol_worst worst;
+    CHECK(hol_violation(chains, r, v, &worst));
+    length = worst.length, rate = worst.rate;
+    CHECK_AT_MOST(length, 1e-14);
+    CHECK_AT_MOST(rate, 1e-13);
     hol_chains_destroy(chains);
 }
 
@@ -236,6 +421,10 @@ int main(void)
         cmocka_unit_test(multipliers_of_ten_distances_have_the_least_norm),
         cmocka_unit_test(bent_and_puckered_ones_stay_as_they_are),
         cmocka_unit_test(lengths_that_disagree_are_named_and_nothing_is_added),
+        cmocka_unit_test(lengths_with_the_decimals_of_a_file_are_flat_straight_and_rigid),
+        cmocka_unit_test(what_decimals_do_not_leave_open_stays),
+        cmocka_unit_test(all_bonds_and_angles_of_ethane),
+        cmocka_unit_test(flat_groups_that_share_atoms_turn_about_them),
         cmocka_unit_test(bodies_and_others_come_in_one_list),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

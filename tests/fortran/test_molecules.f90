@@ -200,8 +200,8 @@ contains
       call set%add(pair, 1.0_real64, stat, message)
       call check(stat == HOL_ERR_SHARED_ATOM .and. says("atom 3"), "an atom of an earlier call")
       pair(:, 1) = [4, 5]
-      call set%add(pair, 0.0_real64, stat, message)
-      call check(stat == HOL_ERR_VALUE .and. says("bond 1"), "a length of zero")
+      call set%add(pair, -1.0_real64, stat, message)
+      call check(stat == HOL_ERR_VALUE .and. says("bond 1"), "a length below zero")
       call set%add(reshape([4, 5, 6, 7, 5, 4], [2, 3]), 1.0_real64, stat, message)
       call check(stat == HOL_ERR_DEGENERATE .and. says("bond"), "a bond given twice")
       m = 0

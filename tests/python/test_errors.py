@@ -27,7 +27,7 @@ class Errors(unittest.TestCase):
         molecules.add([(0, 1)], 1)
         with self.assertRaises(hol.SharedAtomError):
             molecules.add([(1, 2)], 1)
-        for wrong in (-1.0, np.nan, 0.0):
+        for wrong in (-1.0, np.nan, 1e-160):
             with self.assertRaises(hol.ArgumentError):
                 molecules.add([(2, 3)], wrong)
         with self.assertRaises(ValueError):

@@ -679,6 +679,13 @@ HOL_API int64_t hol_chains_degrees_of_freedom(const hol_chains *chains, int dime
 /** Memory that the handle occupies, in bytes; 0 if chains is NULL. Since 0.1. */
 HOL_API int64_t hol_chains_memory(const hol_chains *chains);
 
+HOL_API int hol_chains_add_linear(hol_chains *chains, int64_t n_relations, const int64_t *sizes, const int64_t *atoms,
+                                  const double *coefficients, int64_t n_bonds, const int64_t *pairs,
+                                  const double *lengths);
+HOL_API int hol_chains_adjustment(const hol_chains *chains, double *largest, int64_t *bond);
+HOL_API int hol_chains_implied(const hol_chains *chains, unsigned char *implied);
+HOL_API int hol_chains_set_length_tolerance(hol_chains *chains, double tolerance);
+
 /**
  * Bound on the memory that a set of molecules takes. Of a molecule with many cycles (a lattice, a sheet) the
  * elimination fills its matrix: adding it counts what that takes before it takes anything, and refuses it with

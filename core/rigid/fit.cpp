@@ -1,0 +1,242 @@
+#include "core/rigid/fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/rigid/heights.hpp"
+
+namespace holonomic::rigid {
+
+namespace {
+
+std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+// What full digits leave open. Fewer than five atoms are independent wherever they are not flat to rounding. Five and
+// more depend anyway: out of their plane by 1e-6 of their size, they miss no length by more.
+constexpr double of_few = 16 * epsilon, of_many = 1e-12;
+
+// Gauss's and Newton's method: equations of all distances by conjugate gradients, which leave motions as a whole alone.
+class Fit {
+public:
+    Fit(const Distances &wanted, int dimension, std::vector<double> &x) : dimension_(dimension), x_(x) {
+        for (std::int64_t i = 0; i < wanted.n; ++i)
+            for (std::int64_t j = 0; j < i; ++j)
+                if (wanted.at(i, j) > 0) pairs_.push_back({i, j, wanted.at(i, j), 0, {}});
+    }
+
+    void run() {
+        double before = std::numeric_limits<double>::infinity();
+        for (int round = 0; round < 30; ++round) {
+            const double square = measure();
+            if (!(square < before * (1 - 1e-12))) break;
+            before = square;
+            best_ = x_;
+            step();
+        }
+        x_ = best_;
+    }
+
+private:
+    struct Pair {
+        std::int64_t i, j;
+        double length, missing, along[3];
+    };
+    using Vector = std::vector<double>;
+
+    double measure() {
+        double sum = 0;
+        for (Pair &pair : pairs_) {
+            double square = 0;
+            for (int c = 0; c < dimension_; ++c) {
+                pair.along[c] = x_[at(3 * pair.i + c)] - x_[at(3 * pair.j + c)];
+                square += pair.along[c] * pair.along[c];
+            }
+            const double distance = std::sqrt(square);
+            for (int c = 0; c < dimension_; ++c) pair.along[c] /= distance;
+            pair.missing = pair.length - distance;
+            sum += pair.missing * pair.missing;
+        }
+        return sum;
+    }
+    Vector stretch(const Vector &move) const {
+        Vector out;
+        for (const Pair &pair : pairs_) {
+            double sum = 0;
+            for (int c = 0; c < dimension_; ++c)
+                sum += pair.along[c] * (move[at(3 * pair.i + c)] - move[at(3 * pair.j + c)]);
+            out.push_back(sum);
+        }
+        return out;
+    }
+    Vector pull(const Vector &tension) const {
+        Vector out(x_.size(), 0.0);
+        for (std::size_t k = 0; k < pairs_.size(); ++k)
+            for (int c = 0; c < dimension_; ++c) {
+                out[at(3 * pairs_[k].i + c)] += pairs_[k].along[c] * tension[k];
+                out[at(3 * pairs_[k].j + c)] -= pairs_[k].along[c] * tension[k];
+            }
+        return out;
+    }
+    static double square(const Vector &a) {
+        double sum = 0;
+        for (const double x : a) sum += x * x;
+        return sum;
+    }
+    void step() {
+        Vector residual;
+        for (const Pair &pair : pairs_) residual.push_back(pair.missing);
+        Vector gradient = pull(residual), direction = gradient;
+        double size = square(gradient);
+        const double enough = 1e-28 * size;
+        for (std::size_t k = 0; k < 2 * x_.size() && size > enough; ++k) {
+            const Vector change = stretch(direction);
+            const double factor = size / square(change);
+            if (!std::isfinite(factor)) return;
+            for (std::size_t e = 0; e < x_.size(); ++e) x_[e] += factor * direction[e];
+            for (std::size_t e = 0; e < residual.size(); ++e) residual[e] -= factor * change[e];
+            gradient = pull(residual);
+            const double next = square(gradient);
+            for (std::size_t e = 0; e < x_.size(); ++e) direction[e] = gradient[e] + next / size * direction[e];
+            size = next;
+        }
+    }
+
+    const int dimension_;
+    std::vector<double> &x_, best_;
+    std::vector<Pair> pairs_;
+};
+
+// Of the square of a height, relative to the largest, which independence is a matter of for few atoms.
+double of_heights(const Distances &wanted) { return 2 * epsilon * static_cast<double>(wanted.n - 2); }
+
+// The least number of decimals that all values have, to a few roundings; -1 if more than `most`, or if so many
+// decimals are all that a number of this size has: what is as near by chance is not rounded.
+int decimals_of(const Distances &wanted, int most, bool of_squares) {
+    constexpr double likely = 3e-4;
+    std::vector<double> values(wanted.length);
+    std::sort(values.begin(), values.end());
+    values.erase(std::unique(values.begin(), values.end()), values.end());
+    double scale = 1;
+    for (int p = 0; p <= most; ++p, scale *= 10) {
+        double chance = 1;
+        const auto fits = [&](double length) {
+            const double x = of_squares ? length * scale * (length * scale) : length * scale;
+            // Coordinates far from the origin are off by more than these squares are.
+            const double of_places = of_squares ? std::min(1e-12 * scale * scale, 0.03) : 0;
+            const double slack = std::max(4 * epsilon * x, of_places);
+            if (length > 0) chance *= std::min(1.0, 2 * slack);
+            return (length == 0 || x >= 0.5) && std::fabs(x - std::round(x)) <= slack;
+        };
+        if (std::all_of(values.begin(), values.end(), fits)) return chance < likely ? p : -1;
+    }
+    return -1;
+}
+
+// Whether places on a grid of so many decimals would be on a line or in a plane: what is off it then is no rounding.
+bool are_flat_on_grid(const Distances &wanted, int decimals) {
+    const double scale = std::pow(10.0, 2 * decimals);
+    std::vector<double> squares(wanted.length), places;
+    for (std::int64_t i = 0; i < wanted.n; ++i)
+        for (std::int64_t j = 0; j < i; ++j)
+            if (!(wanted.at(i, j) > 0)) return false;  // not all are held
+    for (double &x : squares) x = std::round(x * x * scale) / scale;
+    return places_in(static_cast<int>(wanted.n) - 2, wanted.n, squares.data(), places) <= of_heights(wanted);
+}
+
+}  // namespace
+
+Misfit misfit_of(const Distances &wanted, const std::vector<double> &places) {
+    Misfit worst{0, 0, 0, 0};
+    for (std::int64_t i = 0; i < wanted.n; ++i)
+        for (std::int64_t j = 0; j < i; ++j) {
+            const double length = wanted.at(i, j);
+            if (!(length > 0)) continue;
+            double square = 0;
+            for (int c = 0; c < 3; ++c) square += std::pow(places[at(3 * i + c)] - places[at(3 * j + c)], 2);
+            const double distance = std::sqrt(square), error = std::fabs(distance - length) / length;
+            if (!(error <= worst.error)) worst = {error, i, j, distance};
+        }
+    return worst;
+}
+
+// Differences of squares, |x - p|^2 - |x - p_0|^2, are linear in x: the least sum of squares of these.
+bool locate(const Distances &wanted, int dimension, std::vector<double> &places) {
+    double A[3][4] = {}, largest = 0;
+    const double *const first = places.data() + 3;
+    for (std::int64_t i = 2; i < wanted.n; ++i) {
+        double row[4] = {0, 0, 0, (std::pow(wanted.at(1, 0), 2) - std::pow(wanted.at(i, 0), 2)) / 2};
+        for (int c = 0; c < dimension; ++c) {
+            row[c] = places[at(3 * i + c)] - first[c];
+            row[3] += row[c] * row[c] / 2;
+        }
+        for (int b = 0; b < dimension; ++b)
+            for (int c = 0; c < 4; ++c) A[b][c] += row[b] * row[c];
+    }
+    for (int b = 0; b < dimension; ++b) largest = std::max(largest, A[b][b]);
+    for (int b = 0; b < dimension; ++b) {
+        if (!(A[b][b] > 1e-3 * largest)) return false;
+        for (int r = b + 1; r < dimension; ++r)
+            for (int c = 3; c >= b; --c) A[r][c] -= A[r][b] / A[b][b] * A[b][c];
+    }
+    for (int b = dimension - 1; b >= 0; --b) {
+        double x = A[b][3];
+        for (int c = b + 1; c < dimension; ++c) x -= A[b][c] * (places[at(c)] - first[c]);
+        places[at(b)] = first[b] + x / A[b][b];
+    }
+    return true;
+}
+
+Misfit fit_places(const Distances &wanted, int dimension, std::vector<double> &places) {
+    for (std::size_t e = 0; e < places.size(); ++e)
+        if (static_cast<int>(e % 3) >= dimension) places[e] = 0;
+    const Misfit misfit = misfit_of(wanted, places);
+    if (misfit.error <= rounding) return misfit;
+    Fit(wanted, dimension, places).run();
+    return misfit_of(wanted, places);
+}
+
+Decimals::Decimals(const Distances &wanted, double tolerance)
+    : open_(wanted.n < 5 ? of_few : of_many), most_(rounding) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const double length : wanted.length)
+        if (length > 0) least = std::min(least, length);
+    const int of_lengths = decimals_of(wanted, 12, false);
+    int of_places = of_lengths < 0 ? decimals_of(wanted, 6, true) : -1;
+    if (of_places >= 0 && wanted.n < 5 && are_flat_on_grid(wanted, of_places)) of_places = -1;
+    // Fewer than three are a round number, not a rounded one.
+    if (of_lengths >= 0) open_ = std::max(open_, std::pow(10.0, -std::max(of_lengths, 3)) / least);
+    if (of_places >= 0) open_ = std::max(open_, 2 * std::pow(10.0, -2 * std::max(of_places, 3)) / (least * least));
+    are_full_ = of_lengths < 0 && of_places < 0;
+    if (are_full_ && wanted.n < 5) highest_ = of_heights(wanted);
+    if (tolerance > 0) most_ = std::max(tolerance, std::min(open_, 10 * tolerance));
+}
+
+Group look_at(const Distances &wanted, double tolerance) {
+    // A group whose square of a height is above this part of the largest square is far from flat, for any tolerance.
+    constexpr double high = 0.05;
+    const std::int64_t n = wanted.n;
+    const int most = static_cast<int>(std::min<std::int64_t>(3, n - 2));
+    std::vector<double> squares(wanted.length);
+    for (double &x : squares) x *= x;
+    Group group{Group::independent, most, {}, {}};
+    for (int d = 1; d <= most; ++d) {
+        const double left = places_in(d, n, squares.data(), group.places);
+        const bool impossible = d == 3 || (d == most && left < 0);  // they fit no place in space
+        if (!impossible && left > high) continue;
+        const Decimals decimals(wanted, tolerance);
+        group.dimension = d;
+        group.misfit = fit_places(wanted, d, group.places);
+        const bool must = impossible && !decimals.allow_position(group.misfit);
+        group.kind = decimals.allow(left, group.misfit) || (must && group.misfit.error <= decimals.most())
+                         ? Group::dependent
+                     : must && n > 3 ? Group::impossible
+                                     : Group::independent;
+        if (group.kind != Group::independent) return group;
+    }
+    return group;
+}
+
+}  // namespace holonomic::rigid
