@@ -567,9 +567,9 @@ HOL_API int hol_chains_set_active(hol_chains *chains, const unsigned char *activ
  * @param[in] tolerance  > 0, or 0 for the default: the rounding of the coordinates, i.e. of the largest coordinate of
  *                       the molecule in the element type of the caller's positions.
  * A tolerance below what the coordinates can carry means the default. A loose one lets the energy drift, and saves
- * little: 1e-8 takes a fifth of the time off chains, trees and rings, and none off water and atoms with three others,
- * which are solved to the rounding at once (docs/recipes.md has a table). A molecule that is within the tolerance
- * already is left where it is.
+ * little: 1e-8 takes a fifth of the time off chains, trees and rings, two fifths off frames of triangles, and none off
+ * water and atoms with three others, which are solved to the rounding at once (docs/recipes.md has a table). A molecule
+ * that is within the tolerance already is left where it is.
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE. Not thread-safe on one handle. Since 0.1.
  */
 HOL_API int hol_chains_set_tolerance(hol_chains *chains, double tolerance);

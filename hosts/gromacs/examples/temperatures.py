@@ -8,6 +8,7 @@ import argparse
 import math
 import pathlib
 import statistics
+import subprocess
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -70,23 +71,30 @@ def mean(values, blocks=10):
     return statistics.fmean(means), statistics.stdev(means) / math.sqrt(blocks)
 
 
+PLOT = """set terminal svg size 640,340 enhanced background 'white'
+set output '{path}'
+set xrange [-0.5:3.5]
+set ytics nomirror
+set xtics ({tics}) nomirror
+set ylabel 'T of cholesterol less T of chains (K)'
+set key bottom right
+plot 0 with lines linecolor 'gray' notitle, {curves}
+"""
+
+
 def draw(rows, path):
-    import matplotlib
-    matplotlib.use("svg")
-    import matplotlib.pyplot as plt
-    figure, axes = plt.subplots(figsize=(6.4, 3.4))
+    """With gnuplot, as all figures."""
     steps = sorted({step for step, *_ in rows})
+    data, curves = "", []
     for k, step in enumerate(steps):
-        mine = [row for row in rows if row[0] == step]
-        at = [i + 0.18 * (k - (len(steps) - 1) / 2) for i in range(len(mine))]
-        axes.errorbar(at, [row[2][0] - row[3][0] for row in mine], [math.hypot(row[2][1], row[3][1]) for row in mine],
-                      fmt="o", capsize=3, label=f"{step} fs")
-    axes.axhline(0, color="0.6", linewidth=0.8)
-    axes.set_xticks(range(len(SOLVERS)), list(SOLVERS))
-    axes.set_ylabel("T of cholesterol less T of chains (K)")
-    axes.legend()
-    figure.tight_layout()
-    figure.savefig(path)
+        data += f"$of{step} << END\n"
+        for i, (_, _, sterol, chain) in enumerate(row for row in rows if row[0] == step):
+            at = i + 0.16 * (k - (len(steps) - 1) / 2)
+            data += f"{at} {sterol[0] - chain[0]} {math.hypot(sterol[1], chain[1])}\n"
+        data += "END\n"
+        curves.append(f"$of{step} with yerrorbars pointtype 7 linewidth 1.5 title '{step} fs'")
+    tics = ", ".join(f"'{solver}' {i}" for i, solver in enumerate(SOLVERS))
+    subprocess.run(["gnuplot"], input=data + PLOT.format(path=path, tics=tics, curves=", ".join(curves)), text=True, check=True)
 
 
 def main():
