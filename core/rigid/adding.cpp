@@ -107,7 +107,7 @@ BodyName name_of_body(const Chains &chains, const rigid::Given &given, std::int6
 }
 
 // A body that its lengths have made stays as it is, and so do flat and straight groups.
-void set_length(const rigid::Shape &shape, std::size_t bond, double length, rigid::Given &given) {
+void give_length(const rigid::Shape &shape, std::size_t bond, double length, rigid::Given &given) {
     const double old = given.bonds[bond].length;
     given.bonds[bond].length = length;
     const rigid::Bond &its = shape.bonds[bond];
@@ -298,7 +298,7 @@ std::unique_ptr<rigid::Bodies> Chains::rebuild_bodies(const Masses &masses, cons
         }
         try {
             for (std::size_t k = 0; lengths && k < given.bonds.size(); ++k)
-                set_length(bodies_->shape(m), k, lengths[given.bond_numbers[k]], given);
+                give_length(bodies_->shape(m), k, lengths[given.bond_numbers[k]], given);
             next->add(given);
         } catch (const rigid::Refusal &refusal) {
             refuse(*this, given, refusal);
