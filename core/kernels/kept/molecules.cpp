@@ -96,11 +96,11 @@ struct KeepTriangles : OneWay {
     template <Inlined where, class V, class Lanes>
     inline HOL_FORCED unsigned solve(const Lanes &lanes, int used, const Atoms<V> &at,
                                      const TriangleKind<V> &kind) const {
-        typedef KeptTriangle<V> Block;
+        typedef KeptTriangle<V> Stored;
         double *const room =
-            call.kept->room(call.kept->owner, lanes.molecule(0), static_cast<int64_t>(sizeof(Block) / sizeof(double)));
+            call.kept->room(call.kept->owner, lanes.molecule(0), static_cast<int64_t>(sizeof(Stored) / sizeof(double)));
         if (!room) return 0;
-        Block &to = *reinterpret_cast<Block *>(room);
+        Stored &to = *reinterpret_cast<Stored *>(room);
         Vector3<V> r[3];
         read_all<where, 3>(call.r, at, r);
         const Triangle<V> x = triangle_of(call.box, r);
