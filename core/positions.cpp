@@ -80,7 +80,7 @@ bool moves_in_parts(const Plan &plan) {
 AtomArray copy_of(const AtomArray &array, const Chains &chains) {
     const std::int64_t bytes = 3 * chains.n_atoms() * static_cast<std::int64_t>(sizeof(double));
     double *const copy = static_cast<double *>(thread_memory(Keep::reference, bytes));
-    if (!copy) throw std::bad_alloc();
+    if (!copy && bytes > 0) throw std::bad_alloc();
     AtomArray to = packed_array(copy);
     chains.for_active([&](const Molecule &m) {
         for (std::int64_t i = 0; i < m.n_atoms; ++i) {

@@ -81,7 +81,7 @@ Reference::Reference(const Chains &chains, const AtomArray &bonds) : chains_(cha
     const std::int64_t n_atoms = chains.n_atoms(), n_staged = static_cast<std::int64_t>(plan.stage.size());
     double *const memory = static_cast<double *>(
         thread_memory(Keep::reference, 3 * static_cast<std::int64_t>(sizeof(double)) * (n_atoms + n_staged)));
-    if (!memory) throw std::bad_alloc();
+    if (!memory && n_atoms + n_staged > 0) throw std::bad_alloc();
     atoms_ = packed_array(memory);
     staged_ = packed_array(memory + 3 * n_atoms);
     if (!bonds.z)

@@ -45,8 +45,8 @@ const std::vector<Verb> &verbs() {
          },
          [](const Call &c) {
              Arrays &a = c.arrays;
-             return c.calls.hol_project_positions_view(c.chains, a.reference.input(), a.r.view(), a.v.view(), c.scene.dt,
-                                                       a.lambda.data(), 0, nullptr, nullptr);
+             return c.calls.hol_project_positions_view(c.chains, a.reference.input(), a.r.view(), a.v.view(),
+                                                       c.scene.dt, a.lambda.data(), 0, nullptr, nullptr);
          }},
     };
     return list;

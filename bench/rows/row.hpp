@@ -23,8 +23,7 @@ public:
     void copy(const Field &other);
     double *packed() { return static_cast<double *>(view_.x); }  ///< of that layout alone
     const hol_view *view() const { return &view_; }
-    const hol_const_view *input()
-    {
+    const hol_const_view *input() {
         read_ = hol_view_read(&view_);
         return &read_;
     }

@@ -125,6 +125,7 @@ void give_length(const rigid::Shape &shape, std::size_t bond, double length, rig
 void Chains::add_rigid(std::int64_t n_bodies, const std::int64_t *sizes, const std::int64_t *atoms,
                        const double *places, std::int64_t n_bonds, const std::int64_t *pairs, const double *lengths) {
     const std::int64_t n_held = check_sizes(n_bodies, sizes, n_bonds, base);
+    if (n_bodies == 0 && n_bonds == 0) return;
     check_memory(*this, n_held + n_bonds, bytes_of_body_atom);
     check_lengths(n_bonds, lengths, base);
     commit_rigid(sort_rigid(n_bodies, sizes, atoms, 0, places, n_bonds, pairs, lengths), n_bonds);

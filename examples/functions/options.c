@@ -33,7 +33,8 @@ int main(void)
     ok(hol_chains_copy(chains, &replica));
     ok(hol_chains_set_box(replica, cube));
     ok(hol_chains_set_length(replica, 2, 1.5));
-    ok(hol_chains_set_bodies(replica, HOL_BODIES_GIVEN)); /* distances that depend on each other are refused from here */
+    ok(hol_chains_set_bodies(replica,
+                             HOL_BODIES_GIVEN)); /* distances that depend on each other are refused from here */
     ok(hol_chains_lengths(replica, lengths));
     shows("second length", lengths[1], 1.5);
     ok(hol_chains_masses(replica, masses));

@@ -186,7 +186,8 @@ int main(int argc, char **argv)
         if (p == 0)
             printf(
                 "%d strands of %d bonds, %d networks, box %.2f %.2f %.2f\n   stretch    stress     error   phantom\n",
-                s.n_strands, (int)o[STRAND].value, (int)hol_chains_n_molecules(s.bonds), s.side[0], s.side[1], s.side[2]);
+                s.n_strands, (int)o[STRAND].value, (int)hol_chains_n_molecules(s.bonds), s.side[0], s.side[1],
+                s.side[2]);
         double block[10] = {0}, mean = 0, error = 0;
         for (int i = 0; i < steps; ++i) {
             hol_worst worst;

@@ -40,7 +40,8 @@ static void forces_may_stand_where_forces_stood(const mixture *m, int apart, int
     any_array r = array_of(m->r, size, apart), v = array_of(m->v, size, apart), f = array_of(m->f, size, apart);
     any_array g = array_of(m->f, size, apart);
     double *lambda = untouched(n), *other = untouched(n), virial[9], sum[9];
-    CHECK(hol_forces_view(m->chains, INPUT(&r.view), INPUT(&v.view), INPUT(&f.view), lambda, NULL, &g.view, mode, virial));
+    CHECK(hol_forces_view(m->chains, INPUT(&r.view), INPUT(&v.view), INPUT(&f.view), lambda, NULL, &g.view, mode,
+                          virial));
     CHECK(hol_forces_view(m->chains, INPUT(&r.view), INPUT(&v.view), INPUT(&f.view), other, NULL, &f.view, mode, sum));
     assert_same_arrays(&g, &f);
     assert_same_bits(lambda, other, n);
@@ -70,7 +71,8 @@ static void positions_may_be_their_own_reference(const mixture *m, int apart)
     const int status =
         hol_project_positions_view(m->chains, INPUT(&ref.view), &r.view, &v.view, 1e-3, lambda, 0, virial, &report);
     assert_int_equal(
-        hol_project_positions_view(m->chains, INPUT(&own.view), &own.view, &u.view, 1e-3, other, 0, sum, &own_report), status);
+        hol_project_positions_view(m->chains, INPUT(&own.view), &own.view, &u.view, 1e-3, other, 0, sum, &own_report),
+        status);
     assert_same_arrays(&r, &own);
     assert_same_arrays(&v, &u);
     assert_same_bits(lambda, other, n);

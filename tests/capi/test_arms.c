@@ -201,7 +201,8 @@ static void lists_and_layouts_change_no_bit(void **state)
         for (size_t i = 0; i < atoms && a < 3; ++i)
             for (size_t c = 0; c < 3; ++c) x[c * atoms + i] = packed[a][3 * i + c];
     }
-    CHECK(hol_forces_view(chains, INPUT(view), INPUT(view + 1), INPUT(view + 2), other, NULL, view + 3, HOL_WRITE, NULL));
+    CHECK(
+        hol_forces_view(chains, INPUT(view), INPUT(view + 1), INPUT(view + 2), other, NULL, view + 3, HOL_WRITE, NULL));
     CHECK(hol_project_velocities_view(chains, INPUT(view), view + 1, NULL, NULL));
     assert_same_bits(other, lambda, n);
     for (size_t i = 0; i < atoms; ++i)

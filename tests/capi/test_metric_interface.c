@@ -109,7 +109,8 @@ static void every_layout_gives_the_same_bits(void **state)
         for (int l = 0; l < n_layouts; ++l) {
             laid_out r = lay_out(&layouts[l], a.n_atoms, a.r, 3);
             laid_out force = lay_out(&layouts[(l + 1) % n_layouts], a.n_atoms, x.force, 3);
-            CHECK(hol_metric_view(a.chains, INPUT(&r.view), 1.5, y.log_det, y.log_det_z, &y.energy, &force.view, HOL_WRITE));
+            CHECK(hol_metric_view(a.chains, INPUT(&r.view), 1.5, y.log_det, y.log_det_z, &y.energy, &force.view,
+                                  HOL_WRITE));
             memcpy(y.force, x.force, x.size * sizeof(double));
             collect(&force, y.force);
             if (force.view.element == HOL_DOUBLE) {

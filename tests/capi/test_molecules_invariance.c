@@ -286,7 +286,8 @@ static void layouts_of_doubles_change_no_bit(void **state)
         laid_out r = lay_out(layouts + k, m.n_atoms, m.r, 3), u = lay_out(layouts + k, m.n_atoms, m.v, 3);
         laid_out f = lay_out(layouts + k, m.n_atoms, m.f, 3), out = lay_out(layouts + k, m.n_atoms, m.f, 3);
         double *got = untouched((size_t)m.n_bonds), *got_g = untouched(size), *got_v = untouched(size);
-        CHECK(hol_forces_view(m.chains, INPUT(&r.view), INPUT(&u.view), INPUT(&f.view), got, NULL, &out.view, HOL_WRITE, NULL));
+        CHECK(hol_forces_view(m.chains, INPUT(&r.view), INPUT(&u.view), INPUT(&f.view), got, NULL, &out.view, HOL_WRITE,
+                              NULL));
         CHECK(hol_project_velocities_view(m.chains, INPUT(&r.view), &u.view, NULL, NULL));
         assert_same_bits(got, lambda, (size_t)m.n_bonds);
         collect(&out, got_g);
@@ -319,7 +320,8 @@ static void floats_and_two_dimensions_give_the_solution_of_the_rounded_numbers(v
             laid_out v = lay_out(layouts + k, m.n_atoms, m.v, dimensions),
                      f = lay_out(layouts + k, m.n_atoms, m.f, dimensions);
             double *lambda = untouched((size_t)m.n_bonds);
-            CHECK(hol_forces_view(m.chains, INPUT(&r.view), INPUT(&v.view), INPUT(&f.view), lambda, NULL, NULL, HOL_WRITE, NULL));
+            CHECK(hol_forces_view(m.chains, INPUT(&r.view), INPUT(&v.view), INPUT(&f.view), lambda, NULL, NULL,
+                                  HOL_WRITE, NULL));
             double *const inputs[3] = {part.r, part.v, part.f};
             const laid_out *const views[3] = {&r, &v, &f};
             for (int n = 0; n < 3; ++n) {

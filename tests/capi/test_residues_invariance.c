@@ -75,7 +75,8 @@ static void lay_out_arrays(residues *s)
         laid_out r = lay_out(how, m->n_atoms, m->r, 3), v = lay_out(other, m->n_atoms, m->v, 3),
                  f = lay_out(other, m->n_atoms, m->f, 3), g = lay_out(how, m->n_atoms, m->f, 3),
                  moved = lay_out(how, m->n_atoms, start, 3);
-        CHECK(hol_forces_view(s->chains, INPUT(&r.view), INPUT(&v.view), INPUT(&f.view), lambda, tension, &g.view, HOL_WRITE, virial));
+        CHECK(hol_forces_view(s->chains, INPUT(&r.view), INPUT(&v.view), INPUT(&f.view), lambda, tension, &g.view,
+                              HOL_WRITE, virial));
         assert_same_bits(lambda, x.bond[0], n);
         assert_same_bits(tension, x.bond[1], n);
         assert_same_bits(virial, x.virial, 9);

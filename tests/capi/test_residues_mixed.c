@@ -158,7 +158,8 @@ static void flatten(residues *s)
         laid_out r = lay_out(&layouts[k], m->n_atoms, m->r, 2), v = lay_out(&layouts[k], m->n_atoms, m->v, 2),
                  f = lay_out(&layouts[k], m->n_atoms, m->f, 2), out = lay_out(&layouts[k], m->n_atoms, m->f, 2);
         CHECK(hol_forces(s->chains, m->r, m->v, m->f, lambda, NULL, g, HOL_WRITE, NULL));
-        CHECK(hol_forces_view(s->chains, INPUT(&r.view), INPUT(&v.view), INPUT(&f.view), flat, NULL, &out.view, HOL_WRITE, NULL));
+        CHECK(hol_forces_view(s->chains, INPUT(&r.view), INPUT(&v.view), INPUT(&f.view), flat, NULL, &out.view,
+                              HOL_WRITE, NULL));
         assert_same_bits(flat, lambda, n);
         assert_laid_out(&out, g, layouts[k].name);
         CHECK(hol_project_velocities_view(s->chains, INPUT(&r.view), &v.view, flat, NULL));

@@ -25,8 +25,8 @@ static void forces_through(const assembly *a, const layout *how, const layout *o
     CHECK(hol_forces(a->chains, a->r, a->v, a->f, lambda, tension, g, mode, virial));
     laid_out r = lay_out(how, a->n_atoms, a->r, 3), v = lay_out(other, a->n_atoms, a->v, 3);
     laid_out f = lay_out(how, a->n_atoms, a->f, 3), out = lay_out(other, a->n_atoms, a->v, 3);
-    CHECK(
-        hol_forces_view(a->chains, INPUT(&r.view), INPUT(&v.view), INPUT(&f.view), view_lambda, view_tension, &out.view, mode, view_virial));
+    CHECK(hol_forces_view(a->chains, INPUT(&r.view), INPUT(&v.view), INPUT(&f.view), view_lambda, view_tension,
+                          &out.view, mode, view_virial));
     assert_same_bits(lambda, view_lambda, n);
     assert_same_bits(tension, view_tension, n);
     assert_same_bits(virial, view_virial, 9);
@@ -122,7 +122,8 @@ static void float_positions_end_at_the_rounding_of_floats(void **state)
         laid_out v = lay_out(&layouts[i], a.n_atoms, a.v, 3);
         hol_report report;
         hol_worst worst;
-        CHECK(hol_project_positions_view(a.chains, INPUT(&r.view), &p.view, &v.view, time_step, NULL, 0, NULL, &report));
+        CHECK(
+            hol_project_positions_view(a.chains, INPUT(&r.view), &p.view, &v.view, time_step, NULL, 0, NULL, &report));
         assert_int_equal(report.n_failed, 0);
         CHECK(hol_violation_view(a.chains, INPUT(&p.view), NULL, &worst));
         /* coordinates up to 20, each rounded by 2^-25 of itself; |d| changes by up to 2 sqrt(3) of that, |d|^2 by twice
@@ -169,8 +170,8 @@ static void two_dimensions_give_the_bits_of_three_with_zero_z(void **state)
         memcpy(g, a.f, sizeof *g * size), memcpy(v, a.v, sizeof *v * size), memcpy(q, start, sizeof *q * size),
             memcpy(u, a.v, sizeof *u * size);
         CHECK(hol_forces(a.chains, a.r, a.v, a.f, lambda, NULL, g, HOL_ADD, virial));
-        CHECK(
-            hol_forces_view(a.chains, INPUT(&fr.view), INPUT(&fv.view), INPUT(&ff.view), flat_lambda, NULL, &ff.view, HOL_ADD, flat_virial));
+        CHECK(hol_forces_view(a.chains, INPUT(&fr.view), INPUT(&fv.view), INPUT(&ff.view), flat_lambda, NULL, &ff.view,
+                              HOL_ADD, flat_virial));
         assert_same_bits(lambda, flat_lambda, n);
         for (int k = 0; k < 9; ++k) assert_true(virial[k] == flat_virial[k]);
         assert_laid_out(&ff, g, layouts[i].name);
@@ -206,8 +207,10 @@ static void views_may_be_null_where_arrays_may(void **state)
     CHECK(hol_forces(a.chains, a.r, NULL, a.f, lambda, NULL, NULL, HOL_WRITE, NULL));
     CHECK(hol_forces_view(a.chains, INPUT(&r), NULL, INPUT(&f), view_lambda, NULL, NULL, HOL_WRITE, NULL));
     assert_same_bits(lambda, view_lambda, 15);
-    CHECK_FAILS(HOL_ERR_NULL, hol_forces_view(a.chains, NULL, NULL, INPUT(&f), view_lambda, NULL, NULL, HOL_WRITE, NULL));
-    CHECK_FAILS(HOL_ERR_NULL, hol_forces_view(NULL, INPUT(&r), NULL, INPUT(&f), view_lambda, NULL, NULL, HOL_WRITE, NULL));
+    CHECK_FAILS(HOL_ERR_NULL,
+                hol_forces_view(a.chains, NULL, NULL, INPUT(&f), view_lambda, NULL, NULL, HOL_WRITE, NULL));
+    CHECK_FAILS(HOL_ERR_NULL,
+                hol_forces_view(NULL, INPUT(&r), NULL, INPUT(&f), view_lambda, NULL, NULL, HOL_WRITE, NULL));
     CHECK_FAILS(HOL_ERR_NULL, hol_project_velocities_view(a.chains, INPUT(&r), NULL, NULL, NULL));
     CHECK_FAILS(HOL_ERR_NULL, hol_project_velocities_view(a.chains, NULL, &f, NULL, NULL));
     CHECK_FAILS(HOL_ERR_NULL, hol_project_positions_view(a.chains, NULL, &r, NULL, 1, NULL, 0, NULL, NULL));
@@ -238,21 +241,30 @@ static void views_that_describe_nothing_are_refused(void **state)
     hol_worst worst;
     for (int i = 0; i < 8; ++i) {
         const int status = i < 2 ? HOL_ERR_NULL : HOL_ERR_VALUE;
-        CHECK_FAILS(status, hol_forces_view(a.chains, INPUT(&wrong[i]), NULL, NULL, lambda, NULL, &out, HOL_WRITE, virial));
-        CHECK_FAILS(status, hol_forces_view(a.chains, INPUT(&good), INPUT(&wrong[i]), NULL, lambda, NULL, &out, HOL_WRITE, virial));
-        CHECK_FAILS(status, hol_forces_view(a.chains, INPUT(&good), NULL, INPUT(&wrong[i]), lambda, NULL, &out, HOL_WRITE, virial));
-        CHECK_FAILS(status, hol_forces_view(a.chains, INPUT(&good), NULL, NULL, lambda, NULL, &wrong[i], HOL_WRITE, virial));
+        CHECK_FAILS(status,
+                    hol_forces_view(a.chains, INPUT(&wrong[i]), NULL, NULL, lambda, NULL, &out, HOL_WRITE, virial));
+        CHECK_FAILS(status, hol_forces_view(a.chains, INPUT(&good), INPUT(&wrong[i]), NULL, lambda, NULL, &out,
+                                            HOL_WRITE, virial));
+        CHECK_FAILS(status, hol_forces_view(a.chains, INPUT(&good), NULL, INPUT(&wrong[i]), lambda, NULL, &out,
+                                            HOL_WRITE, virial));
+        CHECK_FAILS(status,
+                    hol_forces_view(a.chains, INPUT(&good), NULL, NULL, lambda, NULL, &wrong[i], HOL_WRITE, virial));
         CHECK_FAILS(status, hol_project_velocities_view(a.chains, INPUT(&wrong[i]), &out, lambda, virial));
         CHECK_FAILS(status, hol_project_velocities_view(a.chains, INPUT(&good), &wrong[i], lambda, virial));
-        CHECK_FAILS(status, hol_project_positions_view(a.chains, INPUT(&wrong[i]), &out, NULL, 1, lambda, 0, virial, NULL));
-        CHECK_FAILS(status, hol_project_positions_view(a.chains, INPUT(&good), &wrong[i], NULL, 1, lambda, 0, virial, NULL));
-        CHECK_FAILS(status, hol_project_positions_view(a.chains, INPUT(&good), &out, &wrong[i], 1, lambda, 0, virial, NULL));
+        CHECK_FAILS(status,
+                    hol_project_positions_view(a.chains, INPUT(&wrong[i]), &out, NULL, 1, lambda, 0, virial, NULL));
+        CHECK_FAILS(status,
+                    hol_project_positions_view(a.chains, INPUT(&good), &wrong[i], NULL, 1, lambda, 0, virial, NULL));
+        CHECK_FAILS(status,
+                    hol_project_positions_view(a.chains, INPUT(&good), &out, &wrong[i], 1, lambda, 0, virial, NULL));
         CHECK_FAILS(status, hol_violation_view(a.chains, INPUT(&wrong[i]), NULL, &worst));
         CHECK_FAILS(status, hol_violation_view(a.chains, INPUT(&good), INPUT(&wrong[i]), &worst));
     }
     /* two dimensions in one view, three in another */
-    CHECK_FAILS(HOL_ERR_VALUE, hol_forces_view(a.chains, INPUT(&good), INPUT(&flat), NULL, lambda, NULL, &out, HOL_WRITE, virial));
-    CHECK_FAILS(HOL_ERR_VALUE, hol_forces_view(a.chains, INPUT(&flat), NULL, NULL, lambda, NULL, &out, HOL_WRITE, virial));
+    CHECK_FAILS(HOL_ERR_VALUE,
+                hol_forces_view(a.chains, INPUT(&good), INPUT(&flat), NULL, lambda, NULL, &out, HOL_WRITE, virial));
+    CHECK_FAILS(HOL_ERR_VALUE,
+                hol_forces_view(a.chains, INPUT(&flat), NULL, NULL, lambda, NULL, &out, HOL_WRITE, virial));
     CHECK_FAILS(HOL_ERR_VALUE, hol_project_velocities_view(a.chains, INPUT(&flat), &out, lambda, virial));
     CHECK_FAILS(HOL_ERR_VALUE, hol_violation_view(a.chains, INPUT(&good), INPUT(&flat), &worst));
     assert_untouched(lambda, 15);

@@ -23,8 +23,9 @@ void session::forces()
                             l, maybe(tension.doubles()), into, mode, maybe(virial.doubles()));
         if (status == HOL_OK && l && !any_inactive) check(finite(l, bonds()), "multipliers that are not finite");
     } else {
-        status = hol_forces_view(maybe(chains), maybe(r.input()), maybe(v.input()), maybe(f.input()), maybe(lambda.doubles()),
-                                 maybe(tension.doubles()), maybe(&g.view), mode, maybe(virial.doubles()));
+        status = hol_forces_view(maybe(chains), maybe(r.input()), maybe(v.input()), maybe(f.input()),
+                                 maybe(lambda.doubles()), maybe(tension.doubles()), maybe(&g.view), mode,
+                                 maybe(virial.doubles()));
     }
     out.check_after(status, active());
 }

@@ -136,13 +136,13 @@ void session::react()
     out.add_sum(virial);
     const hol_mode mode = static_cast<hol_mode>(in.often() ? in.byte() & 1 : in.byte());
     const hol_which_box box = static_cast<hol_which_box>(in.often() ? in.byte() & 1 : in.byte());
-    const int status =
-        in.byte() & 1
-            ? hol_reactions(maybe(chains), maybe(r.plain.doubles()), box, maybe(lambda.doubles()),
-                            maybe(tension.doubles()), maybe(g.plain.doubles()), mode, maybe(of_bonds.doubles()),
-                            maybe(virial.doubles()))
-            : hol_reactions_view(maybe(chains), maybe(r.input()), box, maybe(lambda.doubles()), maybe(tension.doubles()),
-                                 maybe(&g.view), mode, maybe(of_bonds.doubles()), maybe(virial.doubles()));
+    const int status = in.byte() & 1
+                           ? hol_reactions(maybe(chains), maybe(r.plain.doubles()), box, maybe(lambda.doubles()),
+                                           maybe(tension.doubles()), maybe(g.plain.doubles()), mode,
+                                           maybe(of_bonds.doubles()), maybe(virial.doubles()))
+                           : hol_reactions_view(maybe(chains), maybe(r.input()), box, maybe(lambda.doubles()),
+                                                maybe(tension.doubles()), maybe(&g.view), mode,
+                                                maybe(of_bonds.doubles()), maybe(virial.doubles()));
     out.check_after(status, active());
 }
 

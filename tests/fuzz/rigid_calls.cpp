@@ -57,9 +57,9 @@ void session::add_rigid()
                                       maybe(lengths.doubles()));
     check_status(status);
     if (status == HOL_OK)
-        check(
-            hol_chains_n_bonds(chains) == bonds_before + n * n_molecules && hol_chains_n_molecules(chains) > chains_before,
-            "bodies or bonds are missing");
+        check(hol_chains_n_bonds(chains) == bonds_before + n * n_molecules &&
+                  hol_chains_n_molecules(chains) > chains_before,
+              "bodies or bonds are missing");
     else
         check(hol_chains_n_molecules(chains) == chains_before && hol_chains_n_bonds(chains) == bonds_before &&
                   hol_chains_degrees_of_freedom(chains, 3) == freedoms_before,

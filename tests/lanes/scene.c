@@ -1,5 +1,5 @@
-#include "../capi/input.h"
 #include "scene.h"
+#include "../capi/input.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -162,16 +162,16 @@ static void call_apart(const scene *s, answers *x, int plain)
     laid_out a[ARRAYS];
     for (int i = 0; i < ARRAYS; ++i) a[i] = lay_out(apart, s->n_atoms, arrays[i], 3);
     note(x,
-         hol_forces_view(s->chains, INPUT(&a[R].view), INPUT(&a[V].view), INPUT(&a[F].view), x->lambda[0], plain ? NULL : x->tension,
-                         &a[G].view, HOL_WRITE, plain ? NULL : x->virial[0]),
+         hol_forces_view(s->chains, INPUT(&a[R].view), INPUT(&a[V].view), INPUT(&a[F].view), x->lambda[0],
+                         plain ? NULL : x->tension, &a[G].view, HOL_WRITE, plain ? NULL : x->virial[0]),
          "forces");
     note(x,
          hol_project_velocities_view(s->chains, INPUT(&a[R].view), &a[PROJECTED].view, x->lambda[1],
                                      plain ? NULL : x->virial[1]),
          "velocities");
     note(x,
-         hol_project_positions_view(s->chains, INPUT(&a[R].view), &a[MOVED].view, &a[PUSHED].view, time_step, x->lambda[2], 0,
-                                    plain ? NULL : x->virial[2], plain ? NULL : &x->report),
+         hol_project_positions_view(s->chains, INPUT(&a[R].view), &a[MOVED].view, &a[PUSHED].view, time_step,
+                                    x->lambda[2], 0, plain ? NULL : x->virial[2], plain ? NULL : &x->report),
          "positions");
     note(x,
          hol_metric_view(s->chains, INPUT(&a[R].view), temperature, x->log_det, plain ? NULL : x->log_det_z,

@@ -162,8 +162,8 @@ library_results compute_in_views(const arrangement &a, double dt)
                                o.virial.data());
     o.metric = hol_metric_view(chains, r.input(), 1, o.log_det.data(), nullptr, nullptr, &fixman.view, HOL_WRITE);
     o.velocities = hol_project_velocities_view(chains, r.input(), &projected.view, o.velocity_lambda.data(), nullptr);
-    o.positions = hol_project_positions_view(chains, r.input(), &drift.view, &moved.view, dt, o.position_lambda.data(), 0,
-                                             nullptr, &o.report);
+    o.positions = hol_project_positions_view(chains, r.input(), &drift.view, &moved.view, dt, o.position_lambda.data(),
+                                             0, nullptr, &o.report);
     g.give_back(o.g);
     fixman.give_back(o.fixman);
     projected.give_back(o.v);

@@ -186,10 +186,11 @@ molecule_results compute_in_views(const placement &a, double dt)
     o.forces = hol_forces_view(chains, r.input(), v.input(), f.input(), o.lambda.data(), nullptr, &g.view, HOL_WRITE,
                                o.virial.data());
     o.solve = hol_solve_view(chains, r.input(), a.rhs.data(), o.solved.data(), nullptr, HOL_WRITE, nullptr);
-    o.metric = hol_metric_view(chains, r.input(), 1, log_det.data(), log_det_z.data(), nullptr, &fixman.view, HOL_WRITE);
+    o.metric =
+        hol_metric_view(chains, r.input(), 1, log_det.data(), log_det_z.data(), nullptr, &fixman.view, HOL_WRITE);
     o.velocities = hol_project_velocities_view(chains, r.input(), &projected.view, o.mu.data(), nullptr);
-    o.positions = hol_project_positions_view(chains, r.input(), &drift.view, &moved.view, dt, o.position_lambda.data(), 0,
-                                             nullptr, nullptr);
+    o.positions = hol_project_positions_view(chains, r.input(), &drift.view, &moved.view, dt, o.position_lambda.data(),
+                                             0, nullptr, nullptr);
     g.give_back(o.g);
     fixman.give_back(o.fixman);
     projected.give_back(o.v);

@@ -17,8 +17,8 @@ unsigned load_and_solve(Linear<double> &, int terms, bool masses_known);
 void solve_for_rates(Linear<vec> &);
 void solve_for_rates(Linear<double> &);
 
-// With factors that were kept, for values per bond that are given, or velocities and forces. Returns the lanes that this
-// answers for.
+// With factors that were kept, for values per bond that are given, or velocities and forces. Returns the lanes that
+// this answers for.
 unsigned solve_kept(Linear<vec> &, const AtomArray &v, const AtomArray &f, const double *rhs);
 unsigned solve_kept(Linear<double> &, const AtomArray &v, const AtomArray &f, const double *rhs);
 
