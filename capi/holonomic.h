@@ -342,7 +342,7 @@ HOL_API int hol_chains_add_rigid_molecules(hol_chains *chains, int64_t n_molecul
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (sizes, coefficients, a relation that follows from the others, masses of
  * 0 whose places do not follow from others, a length, a bond in no molecule with a relation); HOL_ERR_INDEX;
  *         HOL_ERR_SHARED_ATOM (an atom of an earlier call); HOL_ERR_DEGENERATE; HOL_ERR_MEMORY. On an error nothing is
- *         added. Not thread-safe on one handle. Since 0.2.
+ *         added. Not thread-safe on one handle. Since 0.3.
  */
 HOL_API int hol_chains_add_linear(hol_chains *chains, int64_t n_relations, const int64_t *sizes, const int64_t *atoms,
                                   const double *coefficients, int64_t n_bonds, const int64_t *pairs,
@@ -727,7 +727,7 @@ HOL_API int64_t hol_chains_memory(const hol_chains *chains);
  * @param[out] largest  by which part of it the length has been changed that was changed most; 0 if none was
  * @param[out] bond     its number, or NULL; -1 if no length was changed. hol_chains_molecules_of_bonds tells the
  * molecule
- * @return HOL_OK; HOL_ERR_NULL (chains or largest). Since 0.2.
+ * @return HOL_OK; HOL_ERR_NULL (chains or largest). Since 0.3.
  */
 HOL_API int hol_chains_adjustment(const hol_chains *chains, double *largest, int64_t *bond);
 
@@ -735,7 +735,7 @@ HOL_API int hol_chains_adjustment(const hol_chains *chains, double *largest, int
  * Which distances others imply (hol_chains_add_bonds): they are in no equation, and their multipliers are 0.
  * @param[in]  chains
  * @param[out] implied  [n_bonds], 1 or 0
- * @return HOL_OK; HOL_ERR_NULL. Since 0.2.
+ * @return HOL_OK; HOL_ERR_NULL. Since 0.3.
  */
 HOL_API int hol_chains_implied(const hol_chains *chains, unsigned char *implied);
 
@@ -744,7 +744,7 @@ HOL_API int hol_chains_implied(const hol_chains *chains, unsigned char *implied)
  * places in space; what misses these by more is refused when it is added. It holds for what is added later.
  * @param[in,out] chains
  * @param[in]     tolerance  0 .. 0.01; 1e-3 until it is set, 0: lengths must be right to rounding
- * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE. Not thread-safe on one handle. Since 0.2.
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE. Not thread-safe on one handle. Since 0.3.
  */
 HOL_API int hol_chains_set_length_tolerance(hol_chains *chains, double tolerance);
 

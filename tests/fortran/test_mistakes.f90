@@ -62,7 +62,7 @@ contains
       call refused("itself")
       call chains%add(bonds=reshape([1, 2, 2, 1], [2, 2]), lengths=1.0_dp, stat=stat, errmsg=message)
       call refused("bond")
-      call chains%add(bonds=pairs, lengths=[1.0_dp, 0.0_dp, 1.0_dp], stat=stat, errmsg=message)
+      call chains%add(bonds=pairs, lengths=[1.0_dp, -1.0_dp, 1.0_dp], stat=stat, errmsg=message)
       call refused("length")
       call chains%add(bonds=pairs, lengths=[1.0_dp, nan, 1.0_dp], stat=stat, errmsg=message)
       call refused("length")

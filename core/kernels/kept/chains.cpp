@@ -93,7 +93,7 @@ HOL_INLINE void differences(const Block &block, const Packed &x, const RowsOfLan
     if (__builtin_expect(k0 + W <= block.n_min, 1))
         return subtract_chunk<false, weigh>(rows, k0, out, nullptr, block.w3);
     for (int b = 0; b < W; ++b) out[b] = vec3{};
-    for (int i = 0; i < W; ++i)
+    for (int i = 0; i < block.lanes; ++i)
         for (long k = k0; k < k0 + W && k < block.len[i]; ++k)
             for (int c = 0; c < 3; ++c) {
                 const double *const p = x.lane[i] + 3 * k + c, *const w = weigh ? block.w3[i] + 3 * k + c : nullptr;
@@ -174,10 +174,10 @@ HOL_NOINLINE void substitute_given(const Block &block, const System &s, const do
         vec b[W] = {};
         const long end = k0 + W < block.n ? k0 + W : block.n;
         if (k0 + W <= block.n_min) {
-            for (int i = 0; i < W; ++i) b[i] = load(rhs + block.first_bond[i] + k0);
+            for (int i = 0; i < block.lanes; ++i) b[i] = load(rhs + block.first_bond[i] + k0);
             transpose(b);
         } else {
-            for (int i = 0; i < W; ++i)
+            for (int i = 0; i < block.lanes; ++i)
                 for (long k = k0; k < end && k < block.len[i]; ++k) b[k - k0][i] = rhs[block.first_bond[i] + k];
         }
         for (long k = k0; k < end; ++k) {
