@@ -142,11 +142,13 @@ Scene make_scene(const std::string &kind, int n_bonds, int n_pieces, const std::
         b.scene.stiff = true;
         b.scene.time_step = 1e-4;
     } else if (kind == "flat") {
-        // A chain with a triangle whose height is 10^-n_bonds
-        const double height = std::pow(10, -n_bonds);
+        // A chain with a triangle whose height is about 10^-n_bonds. Numbers of few decimals would be taken for rounded
+        // ones, and the triangle for a straight one.
+        const double height = std::sqrt(0.7) * std::pow(10, -n_bonds), side = std::sqrt(1.3);
         const int corner = b.strand(b.atom(1, {0, 0, 0}), 10, 1, 0.3, {1, 0, 0});
         const Point at = b.at(corner);
-        const int middle = b.atom(1, {at[0] + 1, at[1] + height, at[2]}), end = b.atom(1, {at[0] + 2, at[1], at[2]});
+        const int middle = b.atom(1, {at[0] + side, at[1] + height, at[2]}),
+                  end = b.atom(1, {at[0] + 2 * side, at[1], at[2]});
         b.bond(corner, middle), b.bond(middle, end), b.bond(corner, end);
         b.strand(end, 10, 1, 0.3, {1, 0, 0});
         b.scene.stiff = true;
