@@ -200,6 +200,7 @@ static void factors_belong_to_the_set_and_positions_of_the_update(void **state)
     CHECK_FAILS(HOL_ERR_VALUE, hol_factors_solve(factors, -1, f, NULL, NULL, HOL_WRITE, NULL));
     CHECK_FAILS(HOL_ERR_NULL, hol_factors_update(factors, NULL));
     CHECK_FAILS(HOL_ERR_NULL, hol_factors_forces(NULL, v, f, NULL, NULL, g[0], HOL_WRITE, NULL));
+    hol_factors_destroy(factors);
     CHECK_FAILS(HOL_ERR_NULL, hol_factors_create(NULL, &factors));
     assert_null(factors);
     hol_chains_destroy(chains);
