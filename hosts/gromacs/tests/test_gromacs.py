@@ -407,10 +407,12 @@ class Words(Case):
         with self.assertRaisesRegex(g.Failed, "-update cpu"):
             g.call([g.WRAPPER, "mdrun", "-update", "gpu"], self.folder)
 
-    def test_all_angles_of_an_alkane_end_with_the_librarys_words(self):
+    def test_all_angles_of_an_alkane_are_held(self):
+        """More distances than freedoms, of which no force field's are quite those of places in space."""
         self.scene([(s.alkane(4), 8)], 1.2, constraints="all-angles")
-        with self.assertRaisesRegex(g.Failed, r"Constraints by holonomic: [^-]*atoms"):
-            g.mdrun(self.folder, name="exact")
+        g.mdrun(self.folder, name="exact")
+        rmsd = g.energies(self.folder, ["Constr.-rmsd"], name="exact")["Constr. rmsd"]
+        self.assertLess(max(rmsd), 1e-3)  # of the topology's lengths, which have been adjusted by less
 
     def exploding(self, **options):
         self.scene([(s.chain(6), 27)], 0.8, dt=0.05, nsteps=200, lincs_warnangle=30, gen_temp=3000, **options)
