@@ -33,7 +33,9 @@ std::uint64_t hash_of(const std::vector<double> &words) {
     return hash.value();
 }
 
-bool same_words(const double *a, const double *b, std::size_t n) { return std::memcmp(a, b, n * sizeof(double)) == 0; }
+bool same_words(const double *a, const double *b, std::size_t n) {
+    return n == 0 || std::memcmp(a, b, n * sizeof(double)) == 0;
+}
 
 std::vector<double> signature_of(const Given &given) {
     std::vector<double> words;
