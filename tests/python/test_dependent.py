@@ -119,6 +119,19 @@ class Files(unittest.TestCase):
                 molecules.project_positions(r, moved, 0.01, v)
                 self.assertLess(molecules.violation(moved).length, 1e-12)
 
+    def test_full_digits_are_flat_to_rounding_alone(self):
+        rng = np.random.default_rng(7)
+        for height in (1.2345678e-3, 1.3456789e-5, 1.4567891e-6, 3.1415927e-7):
+            for a, b in [(0.5, 0.5)] + rng.uniform(0.5, 2, (20, 2)).tolist():  # halves: nearly a grid, but not of decimals
+                for scale in (1.0, 2.0**-40, 2.0**40):
+                    lengths = [np.hypot(a, height) * scale, np.hypot(b, height) * scale, (a + b) * scale]
+                    molecules = hol.Molecules([16.0, 12.0, 16.0])
+                    molecules.add([(0, 1), (1, 2), (0, 2)], lengths)
+                    self.assertEqual((molecules.degrees_of_freedom(), molecules.adjustment), (6, (0.0, None)))
+        molecules = hol.Molecules([16.0, 12.0, 16.0])
+        molecules.add([(0, 1), (1, 2), (0, 2)], [1.1234567890123, 1.2345678901234, 1.1234567890123 + 1.2345678901234])
+        self.assertEqual(molecules.degrees_of_freedom(), 5)
+
     def test_the_adjustment_is_told_and_bounded(self):
         circle = 2 * np.pi * np.arange(3) / 3
         r = np.vstack([np.zeros(3), 0.126 * np.c_[np.cos(circle), np.sin(circle), np.zeros(3)]])
