@@ -14,6 +14,7 @@
 #include "core/run/diagnose.hpp"
 #include "core/run/execute.hpp"
 #include "core/run/outcomes.hpp"
+#include "core/run/rescale.hpp"
 #include "core/run/thread_memory.hpp"
 
 namespace holonomic {

@@ -10,6 +10,7 @@
 #include "core/run/diagnose.hpp"
 #include "core/run/execute.hpp"
 #include "core/run/outcomes.hpp"
+#include "core/run/rescale.hpp"
 
 namespace holonomic {
 

@@ -6,7 +6,6 @@
 #include "core/kernels/tally.hpp"
 #include "core/molecules/chains.hpp"
 #include "core/run/kernel_choice.hpp"
-#include "core/run/rescale.hpp"
 
 namespace holonomic {
 

@@ -170,25 +170,14 @@ double most_w(const KernelMolecule &m) { return m.w ? *std::max_element(m.w, m.w
 
 bool find_units(const KernelMolecule &m, const AtomArray &r, const Box &box, Powers &units) {
     double longest = 0, sum = 0;  // max() may lose a NaN, the sum keeps it
-    const auto take = [&](const double *d) {
-        for (int c = 0; c < 3; ++c) {
-            longest = std::max(longest, std::fabs(d[c]));
-            sum += std::fabs(d[c]);
-        }
-    };
-    if (!m.schedule && !m.atoms && r.packed && box.shape == Box::none) {  // long chains come here often
-        const double *const x = reinterpret_cast<const double *>(r.x) + 3 * m.first_atom;
-        for (std::int64_t k = 0; k < m.n_bonds; ++k) {
-            const double d[3] = {x[3 * k + 3] - x[3 * k], x[3 * k + 4] - x[3 * k + 1], x[3 * k + 5] - x[3 * k + 2]};
-            take(d);
-        }
-    } else {
-        for (std::int64_t k = 0; k < m.n_bonds; ++k) {
-            double from[3], to[3], d[3];
-            read_atom(r, atom_of(m, m.schedule ? m.schedule->atom_i[k] : k), from);
-            read_atom(r, atom_of(m, m.schedule ? m.schedule->atom_j[k] : k + 1), to);
-            bond_vector(box, from, to, d);
-            take(d);
+    for (std::int64_t k = 0; k < m.n_bonds; ++k) {
+        double from[3], to[3], d[3];
+        read_atom(r, atom_of(m, m.schedule ? m.schedule->atom_i[k] : k), from);
+        read_atom(r, atom_of(m, m.schedule ? m.schedule->atom_j[k] : k + 1), to);
+        bond_vector(box, from, to, d);
+        for (const double component : d) {
+            longest = std::max(longest, std::fabs(component));
+            sum += std::fabs(component);
         }
     }
     if (!std::isfinite(sum) || !(longest > 1 / longest_bond && longest < longest_bond)) return false;

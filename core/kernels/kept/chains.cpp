@@ -8,6 +8,7 @@
 #include "core/kernels/memory/open.hpp"
 #include "core/kernels/memory/outputs.hpp"
 #include "core/kernels/memory/small.hpp"
+#include "core/kernels/memory/small_pulls.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
 namespace holonomic::HOL_ISA {
@@ -296,20 +297,7 @@ static int64_t solve_small(const KeptCall &call, const Unit &unit, const Block &
             for (int64_t i = 0; i < n; ++i) call.left[place.chain_of(static_cast<int>(i))] = 1;
             continue;
         }
-        if (call.g.x) {
-            vec value[vectors_of<N>] = {};
-            vec3 before = {};
-            HOL_UNROLL
-            for (int k = 0; k <= N; ++k) {
-                const vec3 after = k < N ? t[k] * D[k] : vec3{}, g = after - before;
-                value[3 * k] = g.x;
-                value[3 * k + 1] = g.y;
-                value[3 * k + 2] = g.z;
-                before = after;
-            }
-            call.add ? store_molecules<add_>(place, value, base(call.g))
-                     : store_molecules<write_>(place, value, base(call.g));
-        }
+        if (call.g.x) store_pulls(D, t, place, base(call.g), call.add);
         if (call.virial) add_virial(N, D, t, first_lanes(static_cast<int>(n)), splat(1.0), tally);
         if (call.lambda) store_multipliers(place, t, splat(0.5), call.lambda);
         if (call.tension) {

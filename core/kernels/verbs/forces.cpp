@@ -7,6 +7,7 @@
 #include "core/kernels/memory/outputs.hpp"
 #include "core/kernels/memory/prefetch.hpp"
 #include "core/kernels/memory/small.hpp"
+#include "core/kernels/memory/small_pulls.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
 namespace holonomic::HOL_ISA {
@@ -112,23 +113,6 @@ HOL_INLINE void load_sides(const Block &block, const Box &box, const Place &plac
         HOL_UNROLL
         for (int k = 0; k < N; ++k) t[k] = right_hand_side(force_difference, block.mass, D[k], dv[k], df[k]);
     }
-}
-
-// G of the atoms of W molecules, written or added.
-template <class Place>
-HOL_INLINE void store_pulls(const vec3 *D, const vec *t, const Place &place, double *out, bool add) {
-    constexpr int N = Place::bonds;
-    vec value[vectors_of<N>] = {};
-    vec3 before = {};
-    HOL_UNROLL
-    for (int k = 0; k <= N; ++k) {
-        const vec3 after = k < N ? t[k] * D[k] : vec3{}, g = after - before;
-        value[3 * k] = g.x;
-        value[3 * k + 1] = g.y;
-        value[3 * k + 2] = g.z;
-        before = after;
-    }
-    add ? store_molecules<add_>(place, value, out) : store_molecules<write_>(place, value, out);
 }
 
 // Does molecules from `first` on. Returns the first one that is not done. `given`: the block of a regular unit.
