@@ -9,21 +9,8 @@ set(pkgconfig_dir ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 # ------------------------------------------------------------------------------------------------------------ files
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT licence)
 
-# What the header cites, and what users of an installed library look for. Links between the pages lead on; pictures and
-# the pages for whoever works on the library stay in the tree.
-install(FILES README.md CHANGELOG.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development)
-foreach(page start promises recipes integrators molecules rigid metric theory linking fortran fortran_reference python porting stability performance abi)
-    install(FILES docs/${page}.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs COMPONENT development)
-endforeach()
-install(FILES docs/reference/tasks.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs/reference COMPONENT development)
-configure_file(docs/reference/holonomic.3.in holonomic.3 @ONLY)
-set(manual ${PROJECT_BINARY_DIR}/holonomic.3)
-find_program(GZIP gzip)
-if(HOLONOMIC_PACKAGE_DEB AND GZIP) # as Debian has its manuals
-    execute_process(COMMAND ${GZIP} -9nc ${manual} OUTPUT_FILE ${manual}.gz)
-    set(manual ${manual}.gz)
-endif()
-install(FILES ${manual} DESTINATION ${CMAKE_INSTALL_MANDIR}/man3 COMPONENT development)
+include(pages)
+include(manual)
 
 install(EXPORT holonomic-targets NAMESPACE holonomic:: DESTINATION ${cmake_dir} COMPONENT development)
 if(HOLONOMIC_BUILD_FORTRAN)

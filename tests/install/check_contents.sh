@@ -24,7 +24,26 @@ done
 for function in $(sed -n 's/^ *\(hol_[a-z_0-9]*\);.*/\1/p' "$source/capi/holonomic.map"); do
     grep -q "$function" share/man/man3/holonomic.3 || fail "the manual does not name $function"
 done
-! grep -n '@' share/man/man3/holonomic.3 || fail "the manual is not filled in"
+! grep -n '@' share/man/man3/*.3 || fail "the manual is not filled in"
+
+# Each function has a page of its own, which shows how it is called, or leads to one that does.
+for function in $(sed -n 's/^ *\(hol_[a-z_0-9]*\);.*/\1/p' "$source/capi/holonomic.map") hol_status hol_view hol_report; do
+    page=share/man/man3/$function.3
+    [ -s "$page" ] || fail "there is no manual of $function"
+    led=$(sed -n 's/^\.so //p' "$page")
+    sed -n '/^\.SH SYNOPSIS/,/^\.fi/p' "${led:+share/man/}${led:-$page}" | grep -q "$function[(;]" || fail "$page does not show $function"
+    grep -q '^\.SH DESCRIPTION' "${led:+share/man/}${led:-$page}" || fail "$page says nothing of it"
+done
+grep -q 'sigma.. = 0, that is' share/man/man3/hol_forces.3 && grep -q '^\.IR tension " (out)"' share/man/man3/hol_forces.3 || fail "hol_forces(3) lacks what the header says"
+# man knows all that stands in them.
+if man -M share/man -w hol_forces >/dev/null 2>&1; then
+    for page in share/man/man3/*.3; do
+        words=$(man --warnings -M share/man -P cat "$(basename "$page" .3)" 2>&1 >/dev/null) && [ -z "$words" ] || fail "$page: $words"
+    done
+fi
+
+# Links between installed pages lead to what is installed.
+"$source/tests/docs/links.sh" "$PWD/share/doc/holonomic" || fail "installed pages have links that lead nowhere"
 
 # The text files that others read; object code may name the files that it was compiled from.
 text=$(find . -name '*.pc' -o -name '*.cmake')

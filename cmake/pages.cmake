@@ -1,0 +1,52 @@
+# The pages that are installed: what the header cites, and what users of an installed library look for, with figures and examples.
+# Pages for whoever works on the library stay in the tree; links to what is not installed become their words.
+
+set(pages README CHANGELOG docs/reference/tasks docs/benchmarks python/README examples/README examples/python/tutorial/README)
+foreach(name start promises recipes integrators molecules rigid metric theory linking fortran fortran_reference python porting stability
+        performance abi)
+    list(APPEND pages docs/${name})
+endforeach()
+foreach(host ase gromacs lammps mpi openmm xtb)
+    list(APPEND pages hosts/${host}/README)
+endforeach()
+list(TRANSFORM pages APPEND .md)
+file(GLOB_RECURSE examples RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS
+    examples/*.[ch] examples/*.f examples/*.f90 examples/*.py examples/*.gp examples/*.txt examples/*.xyz examples/*Makefile)
+list(FILTER examples EXCLUDE REGEX "CMakeLists")
+set(installed ${pages} ${examples} LICENSE CITATION.cff)
+
+set(folder ${PROJECT_BINARY_DIR}/pages)
+file(REMOVE_RECURSE ${folder})
+foreach(page IN LISTS pages)
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${page})
+    file(READ ${page} text)
+    get_filename_component(page_folder ${PROJECT_SOURCE_DIR}/${page} DIRECTORY)
+    string(REGEX MATCHALL "\\([^][ ()\n]+\\)" links "${text}") # without their brackets, in which no list may be cut
+    list(REMOVE_DUPLICATES links)
+    foreach(link IN LISTS links)
+        string(REGEX REPLACE "^\\((.*)\\)$" "\\1" link "${link}")
+        if(NOT link MATCHES "^[A-Za-z0-9_./#-]+$" OR link MATCHES "://|^mailto:|^#")
+            continue()
+        endif()
+        string(REGEX REPLACE "#.*" "" file "${link}")
+        get_filename_component(file "${file}" ABSOLUTE BASE_DIR ${page_folder})
+        file(RELATIVE_PATH file ${PROJECT_SOURCE_DIR} "${file}")
+        if(file MATCHES "^docs/figures/.*[.](png|svg)$" AND EXISTS ${PROJECT_SOURCE_DIR}/${file})
+            list(APPEND installed ${file})
+        endif()
+        # A folder, where something in it is installed.
+        set(below ${installed})
+        list(FILTER below INCLUDE REGEX "^${file}(/|$)")
+        if(NOT below)
+            string(REPLACE "." "[.]" pattern "${link}")
+            string(REGEX REPLACE "\\[([^]]*)\\]\\(${pattern}\\)" "\\1" text "${text}")
+        endif()
+    endforeach()
+    file(WRITE ${folder}/${page} "${text}")
+endforeach()
+list(REMOVE_ITEM installed ${pages} LICENSE) # has a component of its own
+list(REMOVE_DUPLICATES installed)
+foreach(file IN LISTS installed)
+    configure_file(${file} ${folder}/${file} COPYONLY)
+endforeach()
+install(DIRECTORY ${folder}/ DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development)
