@@ -84,6 +84,7 @@ int main() { OpenMM::System system; }' | c++ -x c++ - -lOpenMM -o /dev/null 2>/d
         openmm-python) [ -n "$(python_with numpy, openmm)" ] ;;
         venv) [ -n "$(python_with numpy, venv, ensurepip)" ] ;;
         setuptools) [ -n "$(python_with setuptools, wheel, pip)" ] ;;
+        sphinx) [ -n "$(python_with numpy, sphinx, myst_parser, sphinx_rtd_theme)" ] ;;
         eigen) [ -e /usr/include/eigen3/Eigen/Core ] || pkg-config --exists eigen3 2>/dev/null ;;
         *) command -v "$1" >/dev/null ;;
     esac
@@ -127,6 +128,7 @@ debian_package() {
         pytest) echo python3-pytest ;;
         venv) echo python3-numpy python3-venv ;;
         setuptools) echo python3-setuptools python3-wheel python3-pip ;;
+        sphinx) echo python3-numpy python3-sphinx python3-myst-parser python3-sphinx-rtd-theme ;;
         openmm-python) echo python3-numpy "$(newest_package '^python3-(simtk|openmm)$' python3-openmm)" libopenmm-plugins ;;
         ninja) echo ninja-build ;;
         openblas | mctc-lib) echo "lib$1-dev" ;;

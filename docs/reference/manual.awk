@@ -125,11 +125,16 @@ function argument(line,    way) {
         line = substr(line, RLENGTH + 1)
         gsub(/[][ ]/, "", way)
     }
-    match(line, /^[A-Za-z_0-9]+/)
-    put(".TP\n.IR " substr(line, 1, RLENGTH) (way == "" ? "" : " \" (" way ")\""))
+    if (!match(line, /^[A-Za-z_0-9]+(, *[A-Za-z_0-9]+)+ /)) match(line, /^[A-Za-z_0-9]+ ?/)
+    put(".TP\n.IR " "\"" trimmed(substr(line, 1, RLENGTH)) "\"" (way == "" ? "" : " \" (" way ")\""))
     line = substr(line, RLENGTH + 1)
     sub(/^ */, "", line)
     put(line == "" ? "\\&" : roff(line))
+}
+
+function trimmed(text) {
+    sub(/ +$/, "", text)
+    return text
 }
 
 # What the comment names.
