@@ -30,7 +30,7 @@ myst_heading_anchors = 4
 suppress_warnings = ["myst.header"]  # pages may begin with small headings
 highlight_language = "none"
 autodoc_member_order = "bysource"
-autodoc_typehints = "signature"
+autodoc_typehints = "none"  # what arrays they take is said in words
 autodoc_mock_imports = ["ase"]
 
 html_theme = "sphinx_rtd_theme"
