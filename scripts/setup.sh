@@ -78,6 +78,8 @@ int main() { OpenMM::System system; }' | c++ -x c++ - -lOpenMM -o /dev/null 2>/d
         gromacs-data) [ -e /usr/share/gromacs/top/spc216.gro ] ;;
         flang) present_any flang flang-new flang-22 flang-21 flang-20 flang-new-19 flang-new-18 ;;
         arm) command -v aarch64-linux-gnu-g++ >/dev/null && command -v qemu-aarch64 >/dev/null ;;
+        mingw) present_any x86_64-w64-mingw32-g++-posix x86_64-w64-mingw32-g++ ;;
+        wine) present_any wine64 wine || [ -e /usr/lib/wine/wine64 ] ;;
         numpy) [ -n "$(python_with numpy)" ] ;;
         ase) [ -n "$(python_with numpy, ase)" ] ;;
         pytest) [ -n "$(python_with pytest)" ] ;;
@@ -117,6 +119,8 @@ debian_package() {
         libfuzzer) echo clang libclang-rt-dev ;;
         qemu-x86_64) echo qemu-user ;;
         arm) echo g++-aarch64-linux-gnu qemu-user ;;
+        mingw) echo g++-mingw-w64-x86-64-posix gfortran-mingw-w64-x86-64-posix ;;
+        wine) echo wine wine64 ;;
         clang++) echo clang libomp-dev ;;
         flang) newest_package '^flang-[0-9]+$' flang ;;
         gnuplot) echo gnuplot-nox ;;

@@ -2,7 +2,9 @@
 
 #include <cstdlib>
 
-#if !defined(_WIN32)
+#if defined(_WIN32)
+#include <malloc.h>
+#else
 #include <pthread.h>
 #endif
 #if defined(__linux__)
@@ -28,10 +30,19 @@ struct Blocks {
     bool kept;  // whether the end of the thread will free them
 };
 
+// Windows has an allocation of its own for what is aligned, and another one to give it back.
+#if defined(_WIN32)
+void *aligned(std::size_t alignment, std::size_t bytes) { return _aligned_malloc(bytes, alignment); }
+void give_back(void *data) { _aligned_free(data); }
+#else
+void *aligned(std::size_t alignment, std::size_t bytes) { return std::aligned_alloc(alignment, bytes); }
+void give_back(void *data) { std::free(data); }
+#endif
+
 void release(void *p) {
     Blocks &blocks = *static_cast<Blocks *>(p);
     for (Block &block : blocks.of) {
-        std::free(block.data);
+        give_back(block.data);
         block = Block{nullptr, 0};
     }
     blocks.kept = false;
@@ -76,12 +87,12 @@ void *thread_memory(Keep what, std::int64_t bytes) noexcept {
         if (!keep(blocks)) return nullptr;
         blocks.kept = true;
     }
-    std::free(block.data);
+    give_back(block.data);
     block = Block{nullptr, 0};
     const bool large = bytes >= 4 * large_page;
     const std::size_t alignment = large ? static_cast<std::size_t>(large_page) : sizeof(double) * most_lanes;
     const std::size_t rounded = (static_cast<std::size_t>(bytes) + alignment - 1) / alignment * alignment;
-    block.data = std::aligned_alloc(alignment, rounded);
+    block.data = aligned(alignment, rounded);
 #ifdef MADV_HUGEPAGE
     if (large && block.data) static_cast<void>(madvise(block.data, rounded, MADV_HUGEPAGE));  // a wish
 #endif
