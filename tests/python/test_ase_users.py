@@ -290,7 +290,7 @@ class WhatAtomsAre(unittest.TestCase):
 
     def test_lengths_that_can_not_be(self):
         for length in (-1.0, 0.0, np.nan):
-            atoms = waters(2)
+            atoms = waters(8, 6.2)
             atoms.set_constraint(Constraint([(0, 1), (3, 4)], [0.97, length]))
             with self.assertRaisesRegex(ValueError, "bond of atoms 3 and 4 has the length"):
                 atoms.set_positions(shaken(atoms))
