@@ -205,8 +205,10 @@ int hol_chains_set_active(hol_chains *chains, const unsigned char *active) {
 int hol_chains_set_tolerance(hol_chains *chains, double tolerance) {
     return guarded(__func__, [&] {
         need(chains, "chains");
-        if (!(tolerance >= 0) || !std::isfinite(tolerance))
-            throw make_error(Status::value, "the tolerance is %g; it must be positive, or 0 for the default",
+        if (!(tolerance >= 0 && tolerance < 1))
+            throw make_error(Status::value,
+                             "the tolerance is %g; it must be positive and below 1, a part of the square of a length, "
+                             "or 0 for the default",
                              tolerance);
         chains->chains.tolerance = tolerance;
     });

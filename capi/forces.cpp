@@ -9,8 +9,24 @@ using holonomic::AtomArray;
 using holonomic::ForcesCall;
 using holonomic::guarded;
 using holonomic::need;
+using holonomic::need_apart;
 using holonomic::packed_array;
+using holonomic::refuse_same;
 using holonomic::viewed_array;
+
+namespace {
+
+// Constraint forces may stand where forces stood, and nowhere else.
+inline void run(const hol_chains *chains, ForcesCall &call, double *virial) {
+    const std::int64_t n = chains->n_atoms();
+    need_apart(n, call.v, "v", call.r, "r");
+    need_apart(n, call.g, "g", call.r, "r");
+    need_apart(n, call.g, "g", call.v, "v");
+    if (call.lambda && call.lambda == call.tension && chains->n_bonds() > 0) refuse_same("tension", "lambda");
+    holonomic::forces(chains->chains, call, virial);
+}
+
+}  // namespace
 
 int hol_forces(const hol_chains *chains, const double *r, const double *v, const double *f, double *lambda,
                double *tension, double *g, hol_mode mode, double *virial) {
@@ -25,7 +41,7 @@ int hol_forces(const hol_chains *chains, const double *r, const double *v, const
         call.lambda = lambda;
         call.tension = tension;
         call.add = adds(mode);
-        holonomic::forces(chains->chains, call, virial);
+        run(chains, call, virial);
     });
 }
 
@@ -44,6 +60,6 @@ int hol_forces_view(const hol_chains *chains, const hol_const_view *r, const hol
         call.lambda = lambda;
         call.tension = tension;
         call.add = adds(mode);
-        holonomic::forces(chains->chains, call, virial);
+        run(chains, call, virial);
     });
 }

@@ -35,7 +35,8 @@
  *   HOL_ERR_NO_CONVERGENCE): their outputs stay as they were, bit for bit; all other molecules are complete; sums over
  *   molecules (virial, energy) are not written. Status, message and location are those of the first bad molecule. A
  *   fixed atom of several molecules gets the sum over those that are not bad.
- * - An output may overlap another argument only where its description says so.
+ * - An output may overlap another argument only where its description says so. Velocities that are the very array of
+ *   the positions, or forces that are, are HOL_ERR_VALUE.
  * - The library never prints, exits, aborts or throws.
  * - Floating-point environment: whatever the caller has set (exceptions that trap, as by gfortran's -ffpe-trap; another
  *   rounding; denormal numbers flushed to zero), each function calculates in the default environment of the processor,
@@ -564,12 +565,12 @@ HOL_API int hol_chains_set_active(hol_chains *chains, const unsigned char *activ
 /**
  * Tolerance of hol_project_positions: a molecule is done when |d.d - a^2| / a^2 <= tolerance for each of its bonds.
  * @param[in,out] chains
- * @param[in] tolerance  > 0, or 0 for the default: the rounding of the coordinates, i.e. of the largest coordinate of
- *                       the molecule in the element type of the caller's positions.
- * A tolerance below what the coordinates can carry means the default. A loose one lets the energy drift, and saves
- * little: 1e-8 takes a fifth of the time off chains, trees and rings, two fifths off frames of triangles, and none off
- * water and atoms with three others, which are solved to the rounding at once (docs/recipes.md has a table). A molecule
- * that is within the tolerance already is left where it is.
+ * @param[in] tolerance  > 0 and < 1, or 0 for the default: the rounding of the coordinates, i.e. of the largest
+ * coordinate of the molecule in the element type of the caller's positions. A tolerance below what the coordinates can
+ * carry means the default. A loose one lets the energy drift, and saves little: 1e-8 takes a fifth of the time off
+ * chains, trees and rings, two fifths off frames of triangles, and none off water and atoms with three others, which
+ * are solved to the rounding at once (docs/recipes.md has a table). A molecule that is within the tolerance already is
+ * left where it is.
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE. Not thread-safe on one handle. Since 0.1.
  */
 HOL_API int hol_chains_set_tolerance(hol_chains *chains, double tolerance);
@@ -738,6 +739,17 @@ HOL_API int hol_chains_adjustment(const hol_chains *chains, double *largest, int
  * @return HOL_OK; HOL_ERR_NULL. Since 0.3.
  */
 HOL_API int hol_chains_implied(const hol_chains *chains, unsigned char *implied);
+
+/**
+ * Atoms of mass 0 that bonds tie to something rigid: to a body, or to an atom of a triangle of bonds. Each is held in
+ * space, and its molecule with it. Where a massless site was meant, as M of TIP4P, it belongs into a body
+ * (hol_chains_add_rigid). To be asked once after adding; nothing is wrong with a molecule that is to be tethered, and
+ * an atom of infinite mass (hol_chains_create), which is held on purpose, is never named.
+ * @param[in]  chains
+ * @param[out] held  [n_atoms], 1 or 0
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_MEMORY. O(n_atoms + n_bonds). Since 0.3.
+ */
+HOL_API int hol_chains_held_sites(const hol_chains *chains, unsigned char *held);
 
 /**
  * By which part of them lengths of distances that depend on each other may be adjusted, so that they are those of

@@ -147,6 +147,14 @@ int hol_chains_adjustment(const hol_chains *chains, double *largest, int64_t *bo
     });
 }
 
+int hol_chains_held_sites(const hol_chains *chains, unsigned char *held) {
+    return guarded(__func__, [&] {
+        need(chains, "chains");
+        need(chains->n_atoms(), held, "held");
+        chains->chains.held_sites(held);
+    });
+}
+
 int hol_chains_implied(const hol_chains *chains, unsigned char *implied) {
     return guarded(__func__, [&] {
         need(chains, "chains");

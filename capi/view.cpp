@@ -22,6 +22,10 @@ AtomArray checked_array(const hol_const_view &view, const char *name) {
     return array;
 }
 
+void refuse_same(const char *name, const char *other) {
+    throw make_error(Status::value, "%s is the array that was given for %s", name, other);
+}
+
 void check_dimensions(const AtomArray *const *arrays, int n) {
     const AtomArray *first = nullptr;
     for (int i = 0; i < n; ++i) {

@@ -28,6 +28,13 @@ inline AtomArray viewed_array(std::int64_t count, const hol_view *view, const ch
     return viewed_array(count, &read, name);
 }
 
+// Throws Error where two arrays of `count` atoms, which can't be one, are: the one was given in the other's place.
+[[noreturn]] void refuse_same(const char *name, const char *other);
+inline void need_apart(std::int64_t count, const AtomArray &a, const char *name, const AtomArray &b,
+                       const char *other) {
+    if (a.x && a.x == b.x && count > 0) refuse_same(name, other);
+}
+
 // All views of a call that are there have z, or none has.
 void check_dimensions(const AtomArray *const *arrays, int n);
 

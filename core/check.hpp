@@ -23,6 +23,9 @@ void check_reference(const Chains &chains, const BondVectors &bonds, const char 
 void check_trial(const Chains &chains, const AtomArray &r);
 // Where all bonds fit that well: whether those across a face of the box fit as the others do.
 void check_cut(const Chains &chains, const AtomArray &r, const Box &box, const char *what);
+// Whether what the faces of the box cut is off by so much more than the n that lie inside, each by a part of its length
+// at the worst, that the box is not that of the positions.
+bool is_of_another_box(double cut, double inside, std::int64_t n_inside);
 
 // The error of a molecule that was refused for its trial positions; or false, if it was not for these.
 bool is_stretched(const Chains &chains, std::int64_t molecule, const AtomArray &r, std::int64_t n_bad, Error *error);

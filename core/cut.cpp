@@ -14,9 +14,10 @@ namespace {
 
 // Of a length: coordinates of three decimals are off by as much.
 constexpr double least_of_interest = 1e-3;
-// So many times worse than the worst one inside, of so many at least.
-constexpr double worse = 3;
-constexpr std::int64_t enough_inside = 3;
+// So many times worse than the worst one inside. The worst of a few rounded lengths may be right by chance; not to so
+// many digits as of coordinates that are whole.
+constexpr double worse = 3, worse_than_few = 100;
+constexpr std::int64_t few = 12, least_inside = 3;
 
 struct Worst {
     double off = 0, length = 0;
@@ -33,6 +34,11 @@ struct Worst {
 };
 
 }  // namespace
+
+bool is_of_another_box(double cut, double inside, std::int64_t n_inside) {
+    if (n_inside < least_inside) return false;
+    return cut > std::max(least_of_interest, (n_inside < few ? worse_than_few : worse) * inside);
+}
 
 void check_cut(const Chains &chains, const AtomArray &r, const Box &box, const char *what) {
     if (box.shape == Box::none) return;
@@ -52,7 +58,7 @@ void check_cut(const Chains &chains, const AtomArray &r, const Box &box, const c
         }
         return true;
     });
-    if (inside.n < enough_inside || !(cut.off > std::max(least_of_interest, worse * inside.off))) return;
+    if (!is_of_another_box(cut.off, inside.off, inside.n)) return;
     const Molecule m = chains.molecule(cut.molecule);
     Error error = make_error(Status::lengths,
                              "molecule %s, %s: %.6g long %s, it should be %.6g; a face of the box cuts it, and bonds "

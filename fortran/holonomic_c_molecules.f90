@@ -206,6 +206,13 @@ module holonomic_c_molecules
          integer(c_int) :: status
       end function
 
+      function hol_chains_held_sites(chains, held) bind(c) result(status)
+         import :: c_int, c_ptr, c_signed_char
+         type(c_ptr), value :: chains
+         integer(c_signed_char), intent(out) :: held(*)
+         integer(c_int) :: status
+      end function
+
       function hol_chains_implied(chains, implied) bind(c) result(status)
          import :: c_int, c_ptr, c_signed_char
          type(c_ptr), value :: chains

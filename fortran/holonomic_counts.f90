@@ -3,8 +3,8 @@ module holonomic_counts
    use, intrinsic :: iso_c_binding, only: c_int, c_int64_t, c_loc, c_null_ptr, c_signed_char
    use, intrinsic :: iso_fortran_env, only: int32, int64, real64
    use holonomic_c, only: hol_chains_adjustment, hol_chains_atoms, hol_chains_bonds, hol_chains_degrees_of_freedom, &
-                          hol_chains_implied, hol_chains_memory, hol_chains_molecule, hol_chains_molecules_of_bonds, &
-                          hol_chains_n_atoms, hol_chains_n_bonds, &
+                          hol_chains_held_sites, hol_chains_implied, hol_chains_memory, hol_chains_molecule, &
+                          hol_chains_molecules_of_bonds, hol_chains_n_atoms, hol_chains_n_bonds, &
                           hol_chains_n_molecules, hol_chains_n_kinds, hol_chains_n_of_shape, hol_chains_offsets
    use holonomic_place, only: enough
    use holonomic_settings, only: chain_set_settings
@@ -23,6 +23,7 @@ module holonomic_counts
       procedure :: n_of_shape
       procedure :: n_kinds
       procedure :: adjustment
+      procedure :: held_sites
       procedure :: implied
       procedure :: offsets
       procedure :: molecules_of_bonds
@@ -94,6 +95,23 @@ contains
       call problem%ask(hol_chains_adjustment(self%c_handle(), largest, number))
       if (present(bond)) bond = number
       call settle(problem, "adjustment", stat, errmsg)
+   end subroutine
+
+   ! Atoms of mass 0 that bonds tie to something rigid: it is held in space by them. A massless site belongs into a body.
+   recursive subroutine held_sites(self, is_held, stat, errmsg)
+      class(chain_set_counts), intent(in) :: self
+      logical, intent(inout) :: is_held(:)
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      integer(c_signed_char), allocatable :: bytes(:)
+      type(failure) :: problem
+      call problem%need_created(self%c_handle())
+      if (enough("is_held", size(is_held, kind=int64), self%n_atoms(), "atoms", problem)) then
+         allocate (bytes(max(1_int64, self%n_atoms())))
+         call problem%ask(hol_chains_held_sites(self%c_handle(), bytes))
+         if (problem%none()) is_held(:self%n_atoms()) = bytes(:self%n_atoms()) /= 0
+      end if
+      call settle(problem, "held_sites", stat, errmsg)
    end subroutine
 
    ! Which distances others imply: they are in no equation.

@@ -95,6 +95,7 @@ public:
     void lengths(double *out) const;                                // [n_bonds]
     void masses(double *out) const { masses_.copy(out); }           // [n_atoms]
     void roles(std::int32_t *role, std::int64_t *n_removed) const;  // [n_bonds] a Role each, [n_molecules]; or null
+    void held_sites(unsigned char *held) const;                     // held_sites.cpp [n_atoms] 1 or 0
     const double *given_box() const { return given_box_.h; }        // [9], zeros: none
     const double *given_reference_box() const { return has_reference_box_ ? given_reference_box_.h : given_box_.h; }
     std::int64_t degrees_of_freedom(int dimensions) const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/check.hpp"
 #include "core/rigid/rates.hpp"
 #include "core/rigid/run.hpp"
 #include "core/rigid/verbs.hpp"
@@ -19,6 +20,21 @@ std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 double size_of(const PairVector &a) {
     const Vector3<double> v = rounded(a);
     return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+}
+
+// Whether a face of the box cuts a molecule, as it has been read: an atom was put into another image.
+bool is_cut(const System &system) {
+    double straight = 0, moved = 0;
+    for (std::int32_t i = 1; i < system.shape().n_atoms; ++i) {
+        const Vector3<double> x = rounded(system.now.x[i]);
+        const double at_once[3] = {x.x, x.y, x.z};
+        for (int c = 0; c < 3; ++c) {
+            const double as_it_is = system.raw[3 * i + c] - system.raw[c];
+            straight = std::max(straight, std::fabs(as_it_is));
+            moved = std::max(moved, std::fabs(as_it_is - at_once[c]));
+        }
+    }
+    return moved > 0.25 * straight;
 }
 
 // An error of |d.d - a^2| / a^2, or of a rate.
@@ -107,18 +123,40 @@ private:
     char *memory_;
 };
 
+// Of a square; what is off by more is wrong in another way, too.
+constexpr double most_of_another_box = 1.25;
+
+Error another_box(const Chains &chains, std::int64_t molecule, double off, double inside, const char *what) {
+    const std::int64_t *const atoms = chains.bodies()->atoms(molecule - chains.n_chains());
+    Error error = make_error(Status::lengths,
+                             "molecule %s: off by %.2g of its size %s; a face of the box cuts it, and molecules inside "
+                             "are off by %.2g: hardly the box of these positions",
+                             chains.name_of_rigid(molecule, atoms[0]).text, off, what, std::max(inside, 0.0));
+    error.chain = molecule;
+    error.n_bad = 1;
+    error.base = chains.base;
+    return error;
+}
+
 }  // namespace
 
 void check_reference(const Chains &chains, const AtomArray &r, const Box &box, const char *what) {
-    Worst1 worst;
+    Worst1 worst, cut, inside;
+    std::int64_t n_inside = 0;
     Measure(chains).for_each(r, box, [&](const System &system, const Place &place) {
+        const bool its_cut = box.shape != Box::none && is_cut(system);
+        n_inside += !its_cut;
         Measure::lengths(system, place, [&](double error, std::int64_t bond, std::int64_t atom) {
+            if (std::isfinite(error)) (its_cut ? cut : inside).take(error, place.number, bond, atom);
             // off by a tenth of the length: its square by a fifth
             if (!std::isfinite(error) || !(error > 2 * most_off)) return;
             worst.take(error, place.number, bond, atom);
             note_status(place.number, Status::lengths);
         });
     });
+    // errors of squares are twice those of lengths
+    if (is_of_another_box(cut.error / 2, inside.error / 2, n_inside) && !(cut.error > most_of_another_box))
+        throw another_box(chains, cut.molecule, cut.error / 2, inside.error / 2, what);
     if (worst.molecule < 0) return;
     const std::int64_t m = worst.molecule - chains.n_chains();
     const std::int64_t *const atoms = chains.bodies()->atoms(m);

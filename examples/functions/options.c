@@ -47,6 +47,17 @@ int main(void)
     shows("role", roles[0], HOL_ROLE_OWN);
     shows("freedoms removed", (double)removed[1], 1);
     hol_chains_destroy(replica);
+
+    /* A massless atom in no body holds in space what it is bonded to: hardly meant of a site. */
+    const double with_site[4] = {16, 1, 1, 0}, water[4] = {1, 1, 1.6, 0.15};
+    const int64_t joined[8] = {0, 1, 0, 2, 1, 2, 0, 3};
+    unsigned char held[4];
+    hol_chains *nailed = NULL;
+    ok(hol_chains_create(4, with_site, &nailed));
+    ok(hol_chains_add_bonds(nailed, 4, joined, water));
+    ok(hol_chains_held_sites(nailed, held));
+    shows("a site that holds its water in space", held[3], 1);
+    hol_chains_destroy(nailed);
     shows("version", hol_version_number() >= HOL_VERSION, 1);
     hol_chains_destroy(chains);
     return 0;

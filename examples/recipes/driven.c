@@ -44,6 +44,17 @@ static void drive_velocities(hol_chains *dimer, const double r[2][3], double v[2
         for (int c = 0; c < 3; ++c) v[i][c] += impulse[i][c] / mass[i];
 }
 
+/* What plain hol_project_velocities would do, in silence: the rate is zero afterwards. */
+static double rate_after_plain_projection(hol_chains *dimer, const double r[2][3], const double v[2][3])
+{
+    double u[2][3], d[3], w[3];
+    memcpy(u, v, sizeof u);
+    ok(hol_project_velocities(dimer, r[0], u[0], NULL, NULL));
+    relative(r, d);
+    relative((const double(*)[3])u, w);
+    return dot(d, w);
+}
+
 /* The tension at an instant: as hol_forces finds it, less what a' and a'' ask for. */
 static double tension_at(hol_chains *dimer, const double r[2][3], const double v[2][3], double t)
 {
@@ -76,9 +87,13 @@ static void fly(int steps, double *angle, double *tension)
         ok(hol_project_positions(dimer, before[0], r[0], v[0], dt, NULL, 0, NULL, NULL));
         drive_velocities(dimer, (const double(*)[3])r, v, (s + 1) * dt); /* in place of hol_project_velocities */
     }
-    double d[3];
+    double d[3], speed[3];
     relative((const double(*)[3])r, d);
+    relative((const double(*)[3])v, speed);
     *angle = atan2(d[1], d[0]);
+    agrees("d.u of a driven dimer is a a'", dot(d, speed), length_at(end) * rate_at(end), 1e-13);
+    agrees("and would be 0 by hol_project_velocities",
+           rate_after_plain_projection(dimer, (const double(*)[3])r, (const double(*)[3])v), 0, 1e-14);
     *tension = tension_at(dimer, (const double(*)[3])r, (const double(*)[3])v, end);
     hol_chains_destroy(dimer);
 }

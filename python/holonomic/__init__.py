@@ -14,8 +14,8 @@ from . import tridiagonal
 from ._library import instruction_set, version
 from ._queries import Molecule
 from .errors import (ArgumentError, DegenerateError, Error, LengthsError, LengthsWarning, MasslessWarning,
-                     NoConvergenceError, NotDefiniteError, NotFiniteError, NumberError, OutOfMemoryError, SharedAtomError,
-                     StateError, UnsupportedError)
+                     NoConvergenceError, NotDefiniteError, NotFiniteError, NumberError, OutOfMemoryError, ReferenceWarning,
+                     SharedAtomError, StateError, UnsupportedError)
 from .inverse import Inverse
 from .molecules import Molecules
 from .partition import PartitionFunction, partition_function
@@ -25,6 +25,7 @@ __version__ = "0.3.0"
 __all__ = [
     "ArgumentError", "DegenerateError", "Error", "Forces", "Impulse", "Inverse", "LengthsError", "LengthsWarning",
     "MasslessWarning", "Metric", "Molecule", "Molecules", "NoConvergenceError", "NotDefiniteError", "NotFiniteError",
-    "NumberError", "OutOfMemoryError", "Outcomes", "PartitionFunction", "Reactions", "Report", "SharedAtomError",
+    "NumberError", "OutOfMemoryError", "Outcomes", "PartitionFunction", "Reactions", "ReferenceWarning",
+    "Report", "SharedAtomError",
     "StateError", "UnsupportedError", "Violation", "instruction_set", "partition_function", "tridiagonal", "version",
 ]

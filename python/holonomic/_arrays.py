@@ -131,16 +131,27 @@ def output(array: Any, shape: tuple, name: str) -> np.ndarray:
 
 def _doubles(values: Any, name: str) -> np.ndarray:
     a = np.asarray(values)
-    if a.dtype.kind not in "fiub":
+    if a.dtype.kind not in "fiu":
         raise TypeError(f"{name} must be numbers" + (f", not {values!r}" if isinstance(values, str) else f"; it is of {a.dtype}"))
     return a.astype(np.float64, copy=False)
 
 
-def integer(value: Any, name: str) -> int:
+def integer(value: Any, name: str, bits: int = 64) -> int:
+    """One that an integer of C can hold: ctypes would cut off what is above."""
     try:
-        return operator.index(value)
+        found = operator.index(value)
     except TypeError:
         raise TypeError(f"{name} must be an integer, not {value!r}") from None
+    if not -(1 << (bits - 1)) <= found < 1 << (bits - 1):
+        raise ArgumentError(f"{name} is {found}; integers have up to {bits} bits here")
+    return found
+
+
+def boolean(value: Any, name: str) -> bool:
+    """True or False, or 1 or 0 in their place."""
+    if not isinstance(value, (bool, np.bool_, int, np.integer)) or value not in (0, 1):
+        raise TypeError(f"{name} must be True or False, not {value!r}")
+    return bool(value)
 
 
 def number(value: Any, name: str) -> float:

@@ -115,6 +115,10 @@ def together(parts: List[Kept]) -> Kept:
     twice = pairs[:, 0] == pairs[:, 1]
     if twice.any():
         raise ArgumentError(f"bond {np.flatnonzero(twice)[0]} joins atom {pairs[twice][0, 0]} to itself")
+    impossible = ~(lengths > 0) | ~np.isfinite(lengths)
+    if impossible.any():
+        k = np.flatnonzero(impossible)[0]
+        raise ArgumentError(f"the bond of atoms {pairs[k, 0]} and {pairs[k, 1]} has the length {lengths[k]:g}; it must be positive")
     _, first, which = np.unique(np.sort(pairs, axis=1), axis=0, return_index=True, return_inverse=True)
     of_first = lengths[first][which.ravel()]
     other = np.abs(lengths - of_first) > 1e-9 * of_first

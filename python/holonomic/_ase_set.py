@@ -111,7 +111,7 @@ class MoleculesOfAtoms:
         if self.moving is None:
             return
         if measured:
-            message = cut_bonds_differ(atoms, self.kept)
+            message = cut_bonds_differ(atoms, self.kept.as_pairs())
         else:
             try:
                 self.moving.check(self.whole(atoms))

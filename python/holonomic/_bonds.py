@@ -12,7 +12,6 @@ import numpy as np
 from ._added import Added
 from ._arrays import KnownViews, PackedArrays, address, integer, integers, numbers
 from ._library import library
-from ._massless import held_rigid_atoms
 from ._types import Bodies, Floats, Integers, Pairs, Places
 from .errors import ArgumentError, MasslessWarning, NumberError, ask, ask_to_add
 
@@ -38,6 +37,10 @@ def _again(of: Any, masses: np.ndarray, fixed: Optional[np.ndarray], added: Adde
     return molecules
 
 
+_HELD = ("atom {} has mass 0, and its bonds hold it in space, and its molecule with it. A massless site, as M of TIP4P, is an "
+         "atom of a body: add_rigid")
+
+
 class Bonds:
     """The part of Molecules that knows what is bonded."""
 
@@ -51,7 +54,8 @@ class Bonds:
             self._fixed = _mask(fixed, len(masses))
             masses[self._fixed] = 0
         handle = c_void_p()
-        ask(library.hol_chains_create(len(masses), address(masses), byref(handle)))
+        of_library = self._to_hold(masses)
+        ask(library.hol_chains_create(len(masses), address(of_library), byref(handle)))
         self._handle = handle
         self._n_atoms = len(masses)
         self._destroy = weakref.finalize(self, library.hol_chains_destroy, handle)
@@ -95,9 +99,10 @@ class Bonds:
         lengths = numbers(lengths, len(bonds), "lengths", "bond")
         if len(bonds) == 0:
             return
-        self._look_for_massless(bonds)
+        self._refuse_massless(bonds)
         ask_to_add(library.hol_chains_add_bonds(self._handle, len(bonds), address(bonds), address(lengths)))
         self._noted("add", bonds, lengths)
+        self._warn_of_massless(bonds)
 
     def add_molecules(self, n_molecules: int, n_atoms: int, bonds: Pairs, lengths: Floats, first_atom: int = 0) -> None:
         """Adds the same bonds for n_molecules molecules of n_atoms consecutive atoms each.
@@ -115,10 +120,11 @@ class Bonds:
         first_atom = integer(first_atom, "first_atom")
         if len(bonds) == 0:
             return
-        self._look_for_massless(bonds + first_atom)
+        self._refuse_massless(bonds + first_atom)
         ask_to_add(library.hol_chains_add_molecules(self._handle, n_molecules, n_atoms, first_atom, len(bonds), address(bonds),
                                                     address(lengths)))
         self._noted("add_molecules", n_molecules, n_atoms, bonds, lengths, first_atom)
+        self._warn_of_massless(bonds + first_atom)
 
     def add_chain(self, atoms: Integers, lengths: Floats) -> None:
         """Adds one linear chain by its atoms in order along it: (n+1,) integers; lengths (n,), or one number."""
@@ -154,6 +160,7 @@ class Bonds:
         ask_to_add(library.hol_chains_add_rigid(self._handle, len(sizes), address(sizes), address(atoms), address(where),
                                                 len(bonds), address(bonds), address(lengths)))
         self._noted("add_rigid", *_apart(sizes, atoms, where), bonds, lengths)
+        self._warn_of_massless(bonds)
 
     def add_rigid_molecules(self, n_molecules: int, n_atoms: int, bodies: Bodies, places: Places,
                             bonds: Pairs = (), lengths: Floats = (), first_atom: int = 0) -> None:
@@ -168,6 +175,7 @@ class Bonds:
             self._handle, n_molecules, n_atoms, first_atom, len(sizes), address(sizes), address(atoms), address(where),
             len(bonds), address(bonds), address(lengths)))
         self._noted("add_rigid_molecules", n_molecules, n_atoms, *_apart(sizes, atoms, where), bonds, lengths, first_atom)
+        self._warn_of_massless(bonds + first_atom)
 
     def add_linear(self, atoms: Bodies, coefficients: Any, bonds: Pairs = (), lengths: Floats = ()) -> None:
         """Adds linear relations among atoms, sum_i c_i r_i = 0, and bonds of the molecules in which these are.
@@ -203,22 +211,32 @@ class Bonds:
         sizes = np.array([len(body) for body in atoms], dtype=np.int64)
         return sizes, np.concatenate(atoms), np.ascontiguousarray(np.concatenate(where))
 
-    def _look_for_massless(self, bonds: np.ndarray) -> None:
-        """Bonds that hold a molecule in space, where that is hardly meant."""
-        if not (self._masses == 0).any():
+    def _refuse_massless(self, bonds: np.ndarray) -> None:
+        """Where it is said what is fixed, other atoms of mass 0 are sites: they have no bonds."""
+        if self._fixed is None:
             return
         inside = bonds[((bonds >= 0) & (bonds < self._n_atoms)).all(axis=1)]  # the library refuses the others
-        if self._fixed is not None:
-            held = inside[(self._masses[inside] == 0) & ~self._fixed[inside]].tolist()
-        else:
-            held = held_rigid_atoms(inside, self._masses)
-        if not held:
+        sites = inside[(self._masses[inside] == 0) & ~self._fixed[inside]]
+        if len(sites):
+            raise ArgumentError(_HELD.format(sites[0]) + "; or name it in `fixed`")
+
+    def _warn_of_massless(self, bonds: np.ndarray) -> None:
+        """Of bonds that have been added, and hold a molecule in space where that is hardly meant."""
+        bonded = bonds[self._masses[bonds] == 0]
+        if self._fixed is not None or len(bonded) == 0:
             return
-        what = (f"atom {held[0]} has mass 0, and its bonds hold it in space, and its molecule with it. A massless site, as M of "
-                "TIP4P, is an atom of a body: add_rigid")
-        if self._fixed is not None:
-            raise ArgumentError(what + "; or name it in `fixed`")
-        warnings.warn(MasslessWarning(f"{what}. If it is to be held, say so: Molecules(masses, fixed=[{held[0]}])"), stacklevel=3)
+        sites = bonded[self.held_sites()[bonded]]
+        if len(sites):
+            what = _HELD.format(sites.min())
+            warnings.warn(MasslessWarning(f"{what}. If it is to be held, say so: Molecules(masses, fixed=[{sites.min()}])"),
+                          stacklevel=3)
+
+    def held_sites(self) -> np.ndarray:
+        """Which atoms of mass 0 are bonded to something rigid, (n_atoms,) of bool: they hold it in space. A massless site, as M
+        of TIP4P, is an atom of a body (`add_rigid`)."""
+        held = np.empty(self._n_atoms, np.uint8)
+        ask(library.hol_chains_held_sites(self._handle, address(held)))
+        return held.astype(bool)
 
     def _at_bodies(self, bonds: Any, lengths: Any) -> Tuple[np.ndarray, np.ndarray]:
         bonds = self._pairs(bonds)
@@ -244,8 +262,13 @@ class Bonds:
         masses = np.array(numbers(masses, self._n_atoms, "masses", "atom"))
         if self._fixed is not None:
             masses[self._fixed] = 0
-        ask(library.hol_chains_set_masses(self._handle, address(masses)))
+        of_library = self._to_hold(masses)
+        ask(library.hol_chains_set_masses(self._handle, address(of_library)))
         self._masses = masses
+
+    def _to_hold(self, masses: np.ndarray) -> np.ndarray:
+        """What is fixed has an infinite mass for the library: it is held on purpose, and is no massless site."""
+        return masses if self._fixed is None else np.where(self._fixed, np.inf, masses)
 
 
 def _mask(fixed: Any, n_atoms: int) -> np.ndarray:

@@ -47,6 +47,7 @@ SIGNATURES = {
     "hol_chains_set_active": "i pp",
     "hol_chains_set_length_tolerance": "i pd",
     "hol_chains_adjustment": "i ppp",
+    "hol_chains_held_sites": "i pp",
     "hol_chains_implied": "i pp",
     "hol_chains_set_memory_limit": "i pl",
     "hol_chains_set_tolerance": "i pd",

@@ -121,7 +121,7 @@ class Queries(Bonds):
 
     def degrees_of_freedom(self, dimensions: int = 3) -> int:
         """Those of all atoms that can move, less one for each bond. A conserved total momentum is not subtracted."""
-        count = library.hol_chains_degrees_of_freedom(self._handle, integer(dimensions, "dimensions"))
+        count = library.hol_chains_degrees_of_freedom(self._handle, integer(dimensions, "dimensions", 32))
         if count < 0:
             raise ArgumentError(f"dimensions is {dimensions}; it must be 2 or 3")
         return count

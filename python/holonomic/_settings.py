@@ -6,7 +6,7 @@ from typing import Any, Callable, Optional, Union, overload
 
 import numpy as np
 
-from ._arrays import address, integer, matrix, number
+from ._arrays import address, boolean, integer, matrix, number
 from ._library import library
 from ._queries import Queries
 from ._types import Floats
@@ -93,9 +93,12 @@ class Settings(Queries):
     def active(self, active: Any) -> Optional[np.ndarray]:
         """Molecules that take part, (n_molecules,) of bool; the data of others are neither read nor written. None: all."""
         if active is not None:
-            active = np.array(active, dtype=bool)
-            if active.shape != (self.n_molecules,):
-                raise ArgumentError(f"active has the shape {active.shape}; it must be ({self.n_molecules},)")
+            given = np.array(active)
+            if given.shape != (self.n_molecules,):
+                raise ArgumentError(f"active has the shape {given.shape}; it must be ({self.n_molecules},)")
+            if given.dtype.kind not in "biu" or not np.isin(given, (0, 1)).all():
+                raise TypeError(f"active must be True or False for each molecule, not {given.tolist()!r:.60}")
+            active = given.astype(bool)
         ask(library.hol_chains_set_active(self._handle, address(active)))
         return active
 
@@ -106,7 +109,7 @@ class Settings(Queries):
 
     @threads.setter
     def threads(self, count: int) -> None:
-        count = integer(count, "threads")
+        count = integer(count, "threads", 32)
         ask(library.hol_chains_set_threads(self._handle, count))
         self._threads = count
 
@@ -118,10 +121,9 @@ class Settings(Queries):
 
     @keep_outcomes.setter
     def keep_outcomes(self, keep: bool) -> None:
-        if not isinstance(keep, (bool, np.bool_, int)):
-            raise TypeError(f"keep_outcomes must be True or False, not {keep!r}")
-        ask(library.hol_chains_set_outcomes(self._handle, bool(keep)))
-        self._keep_outcomes = bool(keep)
+        keep = boolean(keep, "keep_outcomes")
+        ask(library.hol_chains_set_outcomes(self._handle, keep))
+        self._keep_outcomes = keep
 
     @property
     def find_bodies(self) -> bool:
@@ -130,10 +132,9 @@ class Settings(Queries):
 
     @find_bodies.setter
     def find_bodies(self, find: bool) -> None:
-        if not isinstance(find, (bool, np.bool_, int)):
-            raise TypeError(f"find_bodies must be True or False, not {find!r}")
+        find = boolean(find, "find_bodies")
         ask(library.hol_chains_set_bodies(self._handle, 0 if find else 1))
-        self._find_bodies = bool(find)
+        self._find_bodies = find
 
     @property
     def tolerance(self) -> float:
@@ -153,7 +154,7 @@ class Settings(Queries):
 
     @max_iterations.setter
     def max_iterations(self, count: int) -> None:
-        count = integer(count, "max_iterations")
+        count = integer(count, "max_iterations", 32)
         ask(library.hol_chains_set_max_iterations(self._handle, count))
         self._max_iterations = count
 
@@ -165,6 +166,7 @@ class Settings(Queries):
 
     @length_tolerance.setter
     def length_tolerance(self, tolerance: float) -> None:
+        tolerance = number(tolerance, "length_tolerance")
         ask(library.hol_chains_set_length_tolerance(self._handle, tolerance))
         self._length_tolerance = tolerance
 

@@ -83,6 +83,10 @@ class MasslessWarning(UserWarning):
     """A bond with an atom of mass 0, which it holds in space, looks as if it was meant for a massless site."""
 
 
+class ReferenceWarning(UserWarning):
+    """The reference of a step is the very array that is projected: it has not the positions before the drift."""
+
+
 _CLASSES = {1: ArgumentError, 2: ArgumentError, 3: NumberError, 4: SharedAtomError, 5: OutOfMemoryError,
             6: NotFiniteError, 7: DegenerateError, 8: NoConvergenceError, 9: NotDefiniteError, 11: LengthsError,
             12: UnsupportedError, 13: StateError}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from ctypes import addressof, byref, c_double, c_int64
 from typing import Any, NoReturn, Optional, Tuple
 
@@ -11,7 +12,7 @@ from ._arrays import NotPacked, address, dimensions, number, numbers, output, vi
 from ._library import bare, library
 from ._settings import Settings
 from ._types import Array, Floats, Integers
-from .errors import ArgumentError, ask, fail
+from .errors import ArgumentError, ReferenceWarning, ask, fail
 from .inverse import Inverse
 from .results import Forces, Impulse, Metric, Outcomes, Reactions, Report, Violation, counted
 
@@ -154,6 +155,8 @@ class Molecules(Settings):
                                      byref(report))
         if status:
             fail(status)
+        if r_ref is r and v is not None and report.n_corrected:
+            _moved_with_it()
         return report
 
     def project_positions_along(self, b: Floats, r: np.ndarray, dt: float, v: Optional[np.ndarray] = None, *,
@@ -285,6 +288,11 @@ def _same(r: Any) -> NoReturn:
     if r is None:
         raise TypeError("r is None: positions are needed")
     raise ArgumentError("v is the array that was given for the positions")
+
+
+def _moved_with_it() -> None:
+    warnings.warn(ReferenceWarning("r_ref is r itself, whose bonds the step has changed: r_ref must have the positions before the "
+                                   "drift (before = r.copy())"), stacklevel=3)
 
 
 def _no_guess() -> NoReturn:

@@ -194,7 +194,7 @@ static void along(hol_chains *both, const double *r)
 static void crude(hol_chains *both, const double *r)
 {
     double moved[21], length[6], rate[6], v[21] = {0}, error = -1;
-    unsigned char implied[6] = {7};
+    unsigned char implied[6] = {7}, held[7] = {7};
     const double middle[3] = {0.5, 0.5, -1};
     const int64_t three = 3, site[3] = {0, 1, 2};
     int64_t bond = 7;
@@ -222,6 +222,8 @@ static void crude(hol_chains *both, const double *r)
     EXPECT(error == 0 && bond == -1);
     SUCCEEDS(hol_chains_implied(both, implied));
     EXPECT(implied[0] == 0);
+    SUCCEEDS(hol_chains_held_sites(both, held));
+    EXPECT(held[0] == 0 && held[6] == 0);
     SUCCEEDS(hol_chains_set_outcomes(both, 1));
     SUCCEEDS(hol_impose(both, moved, &report));
     EXPECT(report.n_corrected == 1 && report.n_failed == 0 && report.iterations > 1);

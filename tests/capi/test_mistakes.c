@@ -1,5 +1,6 @@
 /* Mistakes that are made in the first hour: none is silent, each message has words that lead to it, and nothing of the
- * caller's is changed. What is wrong at the first step with units, boxes and numbering is in test_start.c. */
+ * caller's is changed. What is wrong at the first step with units, boxes and numbering is in test_start.c, boxes that
+ * are slightly wrong in test_cut.c, massless sites in test_held_sites.c. */
 #include "check.h"
 
 enum { ATOMS = 9, BONDS = 9 };
@@ -157,13 +158,103 @@ static void steps(void **state)
     hol_chains_destroy(chains);
 }
 
+/* What has not been made, or is asked of what can't tell. */
+static void handles(void **state)
+{
+    (void)state;
+    hol_chains *chains = waters(), *none = NULL;
+    double r[ATOMS][3], v[ATOMS][3] = {{0}}, box[9];
+    int64_t list[ATOMS];
+    int status[3], iterations[3], shape;
+    hol_factors *factors;
+    hol_inverse *inverse;
+    positions(r);
+    REFUSED("chains is NULL", hol_forces(NULL, r[0], NULL, NULL, NULL, NULL, NULL, HOL_WRITE, NULL));
+    REFUSED("chains is NULL", hol_project_velocities(NULL, r[0], v[0], NULL, NULL));
+    REFUSED("chains is NULL", hol_chains_add_bonds(NULL, 3, pairs, lengths));
+    REFUSED("chains is NULL", hol_chains_copy(NULL, &none));
+    REFUSED("copy is NULL", hol_chains_copy(chains, NULL));
+    REFUSED("chains is NULL", hol_chains_create(ATOMS, masses, NULL));
+    REFUSED("chains is NULL", hol_factors_create(NULL, &factors));
+    REFUSED("molecule 3", hol_inverse_create(chains, 3, r[0], &inverse));
+    REFUSED("molecule 3", hol_chains_molecule(chains, 3, &shape, list, list));
+    REFUSED("bond 9", hol_chains_set_length(chains, 9, 1));
+    REFUSED("outcomes were not kept", hol_outcomes(chains, status, iterations));
+    REFUSED("no reference", hol_reference_error(chains, box, NULL, NULL));
+    REFUSED("base", hol_chains_set_index_base(chains, 1)); /* too late */
+    REFUSED("HOL_BOX", hol_chains_check(chains, r[0], 5));
+    REFUSED("HOL_BOX", hol_chains_box(chains, 5, box));
+    REFUSED("HOL_NEVER", hol_chains_set_checks(chains, 7));
+    REFUSED("HOL_BODIES", hol_chains_set_bodies(chains, 7));
+    REFUSED("bytes", hol_chains_set_memory_limit(chains, -5));
+    REFUSED("0.01", hol_chains_set_length_tolerance(chains, 1));
+    REFUSED("below 1", hol_chains_set_tolerance(chains, 50)); /* a number of iterations */
+    REFUSED("below 1", hol_chains_set_tolerance(chains, 1));  /* nothing would be held */
+    REFUSED("1000", hol_chains_set_max_iterations(chains, 1000000));
+    hol_chains_destroy(chains);
+    CHECK(hol_chains_create(ATOMS, masses, &chains));
+    CHECK(hol_chains_set_index_base(chains, 1));
+    REFUSED("outside 1 .. 3", hol_chains_add_molecules(chains, 3, 3, 1, 3, pairs, lengths));
+    REFUSED("outside the atoms 1 .. 9",
+            hol_chains_add_molecules(chains, 3, 3, 0, 3, (int64_t[6]){1, 2, 1, 3, 2, 3}, lengths));
+    hol_chains_destroy(chains);
+}
+
+/* One array in another one's place. */
+static void arrays(void **state)
+{
+    (void)state;
+    hol_chains *chains = waters();
+    double r[ATOMS][3], before[ATOMS][3], new[ATOMS][3], v[ATOMS][3] = {{0}}, f[ATOMS][3] = {{0}}, g[ATOMS][3];
+    double lambda[BONDS], rhs[BONDS] = {0}, rate[BONDS], size[BONDS];
+    hol_worst worst;
+    positions(before);
+    positions(r);
+    positions(new);
+    new[4][2] += 0.01;
+    REFUSED("v is the array that was given for r", hol_project_velocities(chains, r[0], r[0], NULL, NULL));
+    REFUSED("v is the array that was given for r",
+            hol_forces(chains, r[0], r[0], f[0], NULL, NULL, g[0], HOL_WRITE, NULL));
+    REFUSED("v is the array that was given for r", hol_violation(chains, r[0], r[0], &worst));
+    REFUSED("v is the array that was given for r", hol_residuals(chains, r[0], r[0], size, rate));
+    REFUSED("v is the array that was given for r",
+            hol_project_positions(chains, r[0], new[0], new[0], 1, NULL, 0, NULL, NULL));
+    REFUSED("v is the array that was given for r_ref",
+            hol_project_positions(chains, r[0], new[0], r[0], 1, NULL, 0, NULL, NULL));
+    REFUSED("g is the array that was given for r",
+            hol_forces(chains, r[0], v[0], f[0], NULL, NULL, r[0], HOL_WRITE, NULL));
+    REFUSED("g is the array that was given for v",
+            hol_forces(chains, r[0], v[0], f[0], NULL, NULL, v[0], HOL_WRITE, NULL));
+    REFUSED("tension is the array that was given for lambda",
+            hol_forces(chains, r[0], v[0], f[0], lambda, lambda, g[0], HOL_WRITE, NULL));
+    REFUSED("g is the array that was given for r", hol_solve(chains, r[0], rhs, NULL, r[0], HOL_WRITE, NULL));
+    REFUSED("force is the array that was given for r", hol_metric(chains, r[0], 1, NULL, NULL, NULL, r[0], HOL_WRITE));
+    hol_const_view read = hol_const_view_rows(r[0]);
+    hol_view written = hol_view_rows(r[0]);
+    REFUSED("v is the array that was given for r", hol_project_velocities_view(chains, &read, &written, NULL, NULL));
+    written = hol_view_rows(v[0]);
+    read.stride = 3; /* numbers instead of bytes */
+    REFUSED("multiple of 8", hol_project_velocities_view(chains, &read, &written, NULL, NULL));
+    read = (hol_const_view){0};
+    REFUSED("no x", hol_project_velocities_view(chains, &read, &written, NULL, NULL));
+    read = hol_const_view_rows(r[0]);
+    written.z = NULL; /* two dimensions, and three */
+    REFUSED("some views have z", hol_project_velocities_view(chains, &read, &written, NULL, NULL));
+    REFUSED("rhs is NULL", hol_solve(chains, r[0], NULL, lambda, g[0], HOL_WRITE, NULL));
+    REFUSED("lambda is NULL", hol_reactions(chains, r[0], HOL_BOX, NULL, size, NULL, HOL_WRITE, NULL, NULL));
+    REFUSED("guess", hol_project_positions(chains, r[0], new[0], NULL, 1, lambda, 2, NULL, NULL));
+    assert_memory_equal(r, before, sizeof r);
+    for (int i = 0; i < ATOMS; ++i)
+        for (int c = 0; c < 3; ++c) assert_true(v[i][c] == 0);
+    CHECK(hol_forces(chains, r[0], v[0], f[0], NULL, NULL, f[0], HOL_ADD, NULL)); /* this one may be */
+    hol_chains_destroy(chains);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(masses_and_bonds),
-        cmocka_unit_test(bodies),
-        cmocka_unit_test(settings),
-        cmocka_unit_test(steps),
+        cmocka_unit_test(handles), cmocka_unit_test(arrays),   cmocka_unit_test(masses_and_bonds),
+        cmocka_unit_test(bodies),  cmocka_unit_test(settings), cmocka_unit_test(steps),
     };
     return cmocka_run_group_tests_name("mistakes", tests, NULL, NULL);
 }

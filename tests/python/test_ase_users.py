@@ -280,12 +280,20 @@ class WhatAtomsAre(unittest.TestCase):
             warnings.simplefilter("error")
             atoms.set_constraint(right)
             atoms.set_positions(shaken(atoms))
-        atoms = waters()
-        atoms.wrap()
-        atoms.set_cell([9.4] * 3)
-        atoms.set_constraint(Constraint.waters(atoms))
-        with self.assertWarnsRegex(hol.LengthsWarning, "face of the cell cuts"):
-            atoms.set_positions(shaken(atoms))
+        for bodies in (False, True):
+            atoms = waters()
+            atoms.wrap()
+            atoms.set_cell([9.4] * 3)
+            atoms.set_constraint(Constraint.rigid(np.arange(81).reshape(27, 3).tolist()) if bodies else Constraint.waters(atoms))
+            with self.assertWarnsRegex(hol.LengthsWarning, "face of the cell cuts"):
+                atoms.set_positions(shaken(atoms))
+
+    def test_lengths_that_can_not_be(self):
+        for length in (-1.0, 0.0, np.nan):
+            atoms = waters(8, 6.2)
+            atoms.set_constraint(Constraint([(0, 1), (3, 4)], [0.97, length]))
+            with self.assertRaisesRegex(ValueError, "bond of atoms 3 and 4 has the length"):
+                atoms.set_positions(shaken(atoms))
 
     def test_a_step_that_explodes_says_so(self):
         atoms = waters(8, 6.2)

@@ -216,6 +216,55 @@ class FirstHour(unittest.TestCase):
         with self.assertRaises(ValueError):
             molecules.box = 1.5  # narrower than two bonds
 
+    def test_integers_that_c_would_cut_off(self):
+        molecules, r = self.molecules, self.r
+        for call in (lambda: setattr(molecules, "threads", 2**32 + 2), lambda: setattr(molecules, "max_iterations", 2**32 + 5),
+                     lambda: molecules.degrees_of_freedom(2**32 + 3), lambda: molecules.molecule(2**64),
+                     lambda: molecules.inverse(2**64, r), lambda: setattr(molecules, "memory_limit", 2**64 + 1)):
+            with self.assertRaisesRegex(ValueError, "bits"):
+                call()
+        self.assertEqual((molecules.threads, molecules.max_iterations), (1, 50))
+
+    def test_numbers_where_true_and_false_are_meant(self):
+        molecules = self.molecules
+        for call in (lambda: setattr(molecules, "active", [0, 1, 2]), lambda: setattr(molecules, "active", [0.5, 1, 1]),
+                     lambda: setattr(molecules, "active", ["a", "b", "c"]), lambda: setattr(molecules, "keep_outcomes", 2),
+                     lambda: setattr(molecules, "keep_outcomes", "yes"), lambda: setattr(molecules, "find_bodies", None),
+                     lambda: hol.Molecules([True, False]), lambda: setattr(molecules, "box", True),
+                     lambda: setattr(molecules, "length_tolerance", "1e-4")):
+            with self.assertRaisesRegex(TypeError, "must be"):
+                call()
+        molecules.active = [1, 0, True]
+        self.assertEqual(molecules.active.tolist(), [True, False, True])
+
+    def test_tolerances_that_hold_nothing(self):
+        for tolerance in (1, 50, np.inf):
+            with self.assertRaisesRegex(ValueError, "below 1"):
+                self.molecules.tolerance = tolerance
+
+    def test_a_reference_that_moves_with_the_positions(self):
+        molecules, r, v = self.molecules, self.r, self.v
+        v[1::2, 1] = 0.1
+        before = r  # no copy
+        r += v
+        with self.assertWarnsRegex(hol.ReferenceWarning, r"before = r\.copy\(\)"):
+            molecules.project_positions(before, r, 1.0, v)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            molecules.project_positions(r, r, 1.0, v)  # nothing is to be done
+            r[1] += 1e-3
+            molecules.project_positions(r, r, 1.0)  # crude positions, made right
+
+    def test_constraint_forces_in_place_of_positions(self):
+        molecules, r, v = self.molecules, self.r, self.v
+        for out in (r, v):
+            kept = out.copy()
+            with self.assertRaisesRegex(ValueError, "is the array that was given for"):
+                molecules.forces(r, v, out=out)
+            np.testing.assert_array_equal(out, kept)
+        with self.assertRaisesRegex(ValueError, "is the array that was given for"):
+            molecules.solve(r, 1.0, out=r)
+
     def test_use_before_anything_is_there(self):
         molecules = hol.Molecules(np.ones(2))
         for call in (lambda: molecules.molecule(0), lambda: molecules.inverse(0, np.zeros((2, 3))), molecules.outcomes,
@@ -238,6 +287,24 @@ class Massless(unittest.TestCase):
                 molecules.add(self.water + site, 1.0)
             with self.assertWarnsRegex(hol.MasslessWarning, "atom 7"):
                 molecules.add_molecules(2, 4, self.water + site, 1.0, first_atom=4)
+
+    def test_one_that_is_bonded_to_a_body_too(self):
+        molecules = hol.Molecules([16, 1, 1, 0])
+        with self.assertWarnsRegex(hol.MasslessWarning, "atom 3 .* add_rigid"):
+            molecules.add_rigid([[0, 1, 2]], [[(0, 0, 0), (0.6, 0.8, 0), (0.6, -0.8, 0)]], [(0, 3)], 0.15)
+        self.assertEqual(molecules.held_sites().tolist(), [False, False, False, True])
+        self.assertEqual(molecules.n_bonds, 1)
+
+    def test_what_is_fixed_is_no_site(self):
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            for masses, fixed in (([16, 1, 1, np.inf], None), ([16, 1, 1, 0], [3]), ([16, 1, 1, 5], [3])):
+                molecules = hol.Molecules(masses, fixed=fixed)
+                molecules.add(self.water + [(0, 3)], 1.0)
+                self.assertFalse(molecules.held_sites().any())
+        held = hol.Molecules([16, 1, 1, 0], fixed=[3])
+        with self.assertRaisesRegex(ValueError, "atom 3"):
+            held.add_rigid([[0, 1, 2, 3]], [[(0, 0, 0), (0.6, 0.8, 0), (0.6, -0.8, 0), (0.1, 0, 0)]])
 
     def test_anchors_are_not(self):
         with warnings.catch_warnings():
@@ -311,6 +378,20 @@ class Boxes(unittest.TestCase):
                     molecules.project_positions(r, r + 0.0, 1)
             molecules.checks = "never"
             molecules.project_positions(r, r + 0.0, 1)
+
+    def test_by_bodies_too(self):
+        places = np.array([(0, 0, 0), (0.6, 0.8, 0), (0.6, -0.8, 0)])
+        rng = np.random.default_rng(1)
+        r = np.concatenate([rng.uniform(0, 9.3, 3) + places @ np.linalg.qr(rng.normal(size=(3, 3)))[0] for _ in range(27)]) % 9.3
+        for box, is_right in ((9.3, True), (9.4, False), (9.21, False)):
+            molecules = hol.Molecules(np.tile([16.0, 1, 1], 27))
+            molecules.add_rigid_molecules(27, 3, [[0, 1, 2]], [places])
+            molecules.box = box
+            if is_right:
+                molecules.project_positions(r, r + 0.0, 1)
+            else:
+                with self.assertRaisesRegex(hol.LengthsError, "molecule .* a face of the box cuts it, .*hardly the box"):
+                    molecules.project_positions(r, r + 0.0, 1)
 
     def test_crude_positions_inside_as_across_are_not_blamed_on_it(self):
         molecules, r = self.cut()

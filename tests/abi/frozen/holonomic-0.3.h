@@ -684,6 +684,17 @@ HOL_API int hol_chains_add_linear(hol_chains *chains, int64_t n_relations, const
                                   const double *lengths);
 HOL_API int hol_chains_adjustment(const hol_chains *chains, double *largest, int64_t *bond);
 HOL_API int hol_chains_implied(const hol_chains *chains, unsigned char *implied);
+
+/**
+ * Atoms of mass 0 that bonds tie to something rigid: to a body, or to an atom of a triangle of bonds. Each is held in
+ * space, and its molecule with it. Where a massless site was meant, as M of TIP4P, it belongs into a body
+ * (hol_chains_add_rigid). To be asked once after adding; nothing is wrong with a molecule that is to be tethered, and an
+ * atom of infinite mass (hol_chains_create), which is held on purpose, is never named.
+ * @param[in]  chains
+ * @param[out] held  [n_atoms], 1 or 0
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_MEMORY. O(n_atoms + n_bonds). Since 0.3.
+ */
+HOL_API int hol_chains_held_sites(const hol_chains *chains, unsigned char *held);
 HOL_API int hol_chains_set_length_tolerance(hol_chains *chains, double tolerance);
 
 /**
