@@ -500,7 +500,7 @@ hostile_body make_twin(const hostile_body &of, std::uint64_t seed)
         t.apply(from, to);
         for (std::size_t x = 0; x < 3; ++x) m.p.r[3 * i + x] = static_cast<double>(to[x]);
     }
-    draw_motion(m, d);
+    if (m.shape != LISTED) draw_motion(m, d);
     return m;
 }
 

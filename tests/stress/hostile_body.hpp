@@ -51,6 +51,7 @@ struct hostile_body {
     bool refused = false;        ///< a body of it can't be carried by its masses: hol_chains_add_rigid has to say so
     std::vector<double> listed;  ///< lengths as the library is given them; p has those of the positions
     std::int64_t freedoms = -1;  ///< that it has to have, if it is listed
+    std::vector<std::pair<std::vector<std::size_t>, int>> groups;  ///< of a list: atoms on a line, in a plane, in space
 
     std::int64_t n_bonds() const
     {
@@ -67,6 +68,9 @@ hostile_body make_hostile_body(std::uint64_t seed);
 /** Of one of the two others (hostile_relations.cpp). */
 hostile_body make_related(std::uint64_t seed);
 hostile_body make_listed(std::uint64_t seed);
+/** Puts a list's atoms where the library's lengths are, and says what holds them there; by the set of kernels that is
+ * in use. Nothing else of it is to be asked for before. */
+void complete_listed(hostile_body &m);
 
 /** What both have in common: forces, velocities and a step; whether no bond is all but rounding. */
 void draw_motion(hostile_body &m, molecule_dice &d);

@@ -25,7 +25,7 @@ public:
     {
     }
 
-    bool run()
+    void run()
     {
         add_atom({0, 0, 0});
         add_centre(0, nullptr);
@@ -38,21 +38,19 @@ public:
         }
         for (std::size_t i = 0; i < m_.p.r.size() / 3; ++i)
             m_.p.mass.push_back(m_.features & BODY_MASSES_APART ? d_.decades(-2, 2) : d_.uniform(1, 16));
+        const bool full = d_.chance(0.1);
         const double digits = std::pow(10.0, static_cast<double>(d_.whole(4, 9)));
         for (const auto &pair : m_.p.pairs) {
             const double length = distance(pair[0], pair[1]);
-            m_.listed.push_back(d_.chance(0.1) ? length : std::round(length * digits) / digits);
+            m_.listed.push_back(full ? length : std::round(length * digits) / digits);
         }
-        impose();
-        return find_parts();
     }
 
 private:
     hostile_body &m_;
     molecule_dice &d_;
     std::set<std::size_t> centres_;
-    std::vector<std::array<std::size_t, 2>> ends_;                  // an atom of one bond, and its partner
-    std::vector<std::pair<std::vector<std::size_t>, int>> groups_;  // and their dimensions
+    std::vector<std::array<std::size_t, 2>> ends_;  // an atom of one bond, and its partner
 
     std::size_t add_atom(const point &r)
     {
@@ -78,7 +76,8 @@ private:
     void add_centre(std::size_t centre, const std::size_t *before)
     {
         centres_.insert(centre);
-        const std::int64_t kind = d_.whole(0, 3);
+        const std::int64_t drawn = d_.whole(0, 3);
+        const std::int64_t kind = !before && drawn == 2 ? 3 : drawn;  // a pyramid alone depends on nothing
         point u = d_.direction();
         std::vector<std::size_t> group{centre};
         if (before) {
@@ -111,7 +110,7 @@ private:
         }
         for (std::size_t a = 0; a < group.size(); ++a)
             for (std::size_t b = 0; b < a; ++b) join(group[b], group[a]);
-        groups_.push_back({group, kind == 0 ? 1 : kind == 1 ? 2 : 3});
+        m_.groups.push_back({group, kind == 0 ? 1 : kind == 1 ? 2 : 3});
     }
     void join(std::size_t i, std::size_t j)
     {
@@ -119,6 +118,22 @@ private:
             if (std::minmax(pair[0], pair[1]) == std::minmax(i, j)) return;
         m_.p.pairs.push_back({i, j});
     }
+};
+
+class completion
+{
+public:
+    explicit completion(hostile_body &m) : m_(m)
+    {
+    }
+    void run()
+    {
+        impose();
+        find_parts();
+    }
+
+private:
+    hostile_body &m_;
 
     /** Positions of the lengths as the library adjusts them, which are near. */
     void impose()
@@ -143,7 +158,7 @@ private:
 
     /** Relations of each group by a base, of the positions; distances that are independent beside them, as gradients
      * of all at these positions have them; and the number of freedoms. */
-    bool find_parts()
+    void find_parts()
     {
         std::map<std::size_t, std::vector<std::pair<std::size_t, double>>> followers;
         std::vector<std::vector<real>> rows;  // what has been kept, orthogonal
@@ -166,7 +181,7 @@ private:
             rows.push_back(std::move(row));
             return true;
         };
-        for (const auto &[group, dimension] : groups_) {
+        for (const auto &[group, dimension] : m_.groups) {
             const std::size_t base = static_cast<std::size_t>(dimension) + 1;
             for (std::size_t s = base; s < group.size(); ++s) {
                 std::vector<double> c(n);
@@ -191,7 +206,6 @@ private:
         }
         m_.freedoms = static_cast<std::int64_t>(3 * n - rows.size());
         m_.p.parts = {part};
-        return true;
     }
 
     /** Of a base at whose combination an atom is, the atom from the first one: Gram and Schmidt's method. */
@@ -223,17 +237,24 @@ hostile_body make_listed(std::uint64_t seed)
 {
     molecule_dice d{random_seed(seed * UINT64_C(0x9e3779b97f4a7c15) + 43)};
     unsigned features = 0;
-    for (const unsigned bit : {BODY_MASSES_APART, BODY_ONE_PULLED, BODY_CONSISTENT})
+    for (const unsigned bit : {BODY_MASSES_APART, BODY_ONE_PULLED})
         if (d.chance(0.3)) features |= bit;
-    for (;;) {
-        hostile_body m;
-        m.seed = seed;
-        m.shape = LISTED;
-        m.features = features;
-        if (!list_maker(m, d).run() || !set_lengths(m)) continue;
-        draw_motion(m, d);
-        return m;
-    }
+    // What holds a group is not unique: of other velocities each choice makes another acceleration.
+    features |= BODY_CONSISTENT;
+    hostile_body m;
+    m.seed = seed;
+    m.shape = LISTED;
+    m.features = features;
+    list_maker(m, d).run();
+    return m;
+}
+
+void complete_listed(hostile_body &m)
+{
+    completion(m).run();
+    molecule_dice d{random_seed(m.seed * UINT64_C(0x9e3779b97f4a7c15) + 47)};
+    set_lengths(m);
+    draw_motion(m, d);
 }
 
 }  // namespace stress

@@ -59,7 +59,19 @@ struct group_of_bodies {
     }
     void solve()
     {
-        for (const hostile_body &m : molecules) exact.push_back(solution_of(m));
+        for (const hostile_body &m : molecules)
+            exact.push_back(m.shape == LISTED ? reference::rigid_solution() : solution_of(m));
+    }
+    /** With the kernels that are in use: lists, whose positions are the library's. */
+    group_of_bodies completed() const
+    {
+        group_of_bodies g = *this;
+        for (std::size_t k = 0; k < g.molecules.size(); ++k) {
+            if (g.molecules[k].shape != LISTED) continue;
+            complete_listed(g.molecules[k]);
+            g.exact[k] = solution_of(g.molecules[k]);
+        }
+        return g;
     }
     static reference::rigid_solution solution_of(const hostile_body &m)
     {
@@ -73,8 +85,9 @@ struct group_of_bodies {
     }
 };
 
-void check(const group_of_bodies &g, molecule_tally &sum)
+void check(const group_of_bodies &given, molecule_tally &sum)
 {
+    const group_of_bodies g = given.completed();
     std::vector<molecule_verdict> verdicts(g.molecules.size());
     check_invariances(g.molecules, g.first + 1, verdicts);
     for (std::size_t k = 0; k < g.molecules.size(); ++k) {
@@ -101,6 +114,8 @@ int check_seed(std::uint64_t seed)
         const auto its = g.molecules.begin() + static_cast<std::ptrdiff_t>(seed - first);
         std::rotate(its, its + 1, g.molecules.end());
     }
+    g.exact.resize(g.molecules.size());
+    g = g.completed();
     std::vector<molecule_verdict> verdicts(g.molecules.size());
     check_invariances(g.molecules, first + 1, verdicts);
     const hostile_body &m = g.molecules.back();
