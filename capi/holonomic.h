@@ -280,7 +280,8 @@ HOL_API int hol_chains_add_molecules(hol_chains *chains, int64_t n_molecules, in
  * @param[in]     lengths   [n_bonds], as in hol_chains_add. May be NULL if n_bonds is 0. Copied.
  *
  * Bodies are taken as thin as they are: three atoms on a line to 1e-8 of its length are linear. A site must lie on the
- * line of a linear body and in the plane of a planar one. A bond within a body is satisfied by it: its multiplier is 0.
+ * line of a linear body. Off the plane of a planar one (the lone pairs of TIP5P) it is at its height along the normal,
+ * on the side on which it is in `places`, and can have no bond to atoms outside of its body (since 0.3). A bond within a body is satisfied by it: its multiplier is 0.
  * Bodies may share atoms (since 0.2): one is a ball joint, two are a hinge.
  *
  * Molecules with bodies are numbered behind all others of the set, in the order of their first bodies; their bonds

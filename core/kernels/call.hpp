@@ -138,6 +138,7 @@ struct PositionsCall {
     int max_iterations;
     Box box, box_ref;  // of r; of r_ref
     bool rescaled = false;
+    const double *flow = nullptr;  // L [9] of a box that changes
 };
 
 struct MetricCall {

@@ -87,6 +87,14 @@ BodyName name_of_body(const Chains &chains, const rigid::Given &given, std::int6
                         name(bond.i).text, name(bond.j).text, bond.length),
              chains.base, given.bond_numbers[at(refusal.unsolvable.bond)], given.atoms[at(bond.i)]);
     }
+    if (refusal.unsolvable.cause == Unsolvable::off_plane) {
+        const rigid::Bond &bond = given.bonds[at(refusal.unsolvable.bond)];
+        fail(make_error(Status::value,
+                        "the bond between atoms %s and %s is at a massless site out of the plane of its body's masses: "
+                        "such a site follows the body and has no bonds",
+                        name(bond.i).text, name(bond.j).text),
+             chains.base, given.bond_numbers[at(refusal.unsolvable.bond)], given.atoms[at(bond.i)]);
+    }
     fail(make_error(Status::degenerate,
                     "the molecule of %s has more bonds than its bodies and atoms have freedoms: they depend on each "
                     "other",

@@ -40,6 +40,7 @@ BodyKind kind_of(const Body &body, const Shape &shape) {
     kind.is_spherical = std::all_of(kind.skew, kind.skew + 3, [](double b) { return std::fabs(b) <= 1e-15; });
     std::copy_n(body.excess[0], 16, kind.excess[0]);
     kind.scale = 1 - kind.excess[0][0];
+    kind.height = body.height.empty() ? nullptr : body.height.data();
     kind.masses = body.masses.data();
     kind.place = weights;
     kind.share = weights + n;

@@ -124,6 +124,21 @@ void make_orthonormal(Body &body, const DoublePair &mass) {
     }
 }
 
+bool is_right_handed(const Axes &axes) {
+    const auto e = [&](int p, int c) { return axes.axis[p][c % 3].hi; };
+    double product = 0;
+    for (int c = 0; c < 3; ++c) product += (e(0, c + 1) * e(1, c + 2) - e(0, c + 2) * e(1, c + 1)) * e(2, c);
+    return product > 0;
+}
+
+// A site off the plane.
+void lift(Body &body, std::int32_t site, const DoublePair &height) {
+    body.z.resize(at(body.n_atoms), as_pair(0));
+    body.height.resize(at(body.n_atoms), 0);
+    body.z[at(site)] = height / square_root(body.square[0] * body.square[1]);
+    body.height[at(site)] = rounded(height);
+}
+
 void check_input(std::int32_t n, const double *masses, const double *place) {
     int massive = 0;
     for (std::int32_t a = 0; a < n; ++a) {
@@ -197,8 +212,10 @@ Body make_body(std::int32_t n, const double *masses, const double *place) {
             DoublePair along = as_pair(0);
             for (int c = 0; c < 3; ++c) along = along + axes.axis[p][c] * x[at(3 * a + c)];
             if (p >= body.rank) {
-                if (std::fabs(along.hi) > 4 * thin * extent)
-                    throw BodyFault{masses[a] > 0 ? BodyFault::light : BodyFault::outside, a};
+                if (!(std::fabs(along.hi) > 4 * thin * extent)) continue;
+                if (masses[a] > 0) throw BodyFault{BodyFault::light, a};
+                if (body.rank == 1) throw BodyFault{BodyFault::off_line, a};
+                lift(body, a, is_right_handed(axes) ? along : -along);
                 continue;
             }
             body.y[at(a * body.rank + p)] = along / square_root(body.square[p]);
@@ -210,6 +227,7 @@ Body make_body(std::int32_t n, const double *masses, const double *place) {
             body.share[at(a * (1 + body.rank) + 1 + p)] = (masses[a] * body.y[at(a * body.rank + p)]) / mass;
     double farthest = 0;
     for (const DoublePair &y : body.y) farthest = std::max(farthest, std::fabs(y.hi));
+    for (const double height : body.height) farthest = std::max(farthest, std::fabs(height) / body.length[1]);
     // Of a size, too, whose moments of inertia are far from what a double holds.
     const double least_moment = body.mass * (body.length[body.rank - 1] * body.length[body.rank - 1]);
     body.is_thick = body.length[body.rank - 1] > 1e-3 * body.length[0] && farthest < 100 && least_moment > 1e-200 &&
@@ -219,8 +237,9 @@ Body make_body(std::int32_t n, const double *masses, const double *place) {
 }
 
 std::int64_t Body::bytes() const {
-    return static_cast<std::int64_t>((masses.capacity() + place.capacity() + weights.capacity()) * sizeof(double) +
-                                     (y.capacity() + share.capacity()) * sizeof(DoublePair) +
+    return static_cast<std::int64_t>((masses.capacity() + place.capacity() + weights.capacity() + height.capacity()) *
+                                         sizeof(double) +
+                                     (y.capacity() + z.capacity() + share.capacity()) * sizeof(DoublePair) +
                                      relations.c.capacity() * sizeof(double) + sizeof *this);
 }
 
@@ -236,9 +255,8 @@ const char *fault_in_words(BodyFault::Cause cause) {
             return "has a reference coordinate that is not finite";
         case BodyFault::size:
             return "is too large or too small: choose other units";
-        case BodyFault::outside:
-            return "has a massless site off the line or plane of its masses: such a site has no place that the masses "
-                   "determine";
+        case BodyFault::off_line:
+            return "has a massless site off the line of its masses: such a site has no place that the masses determine";
         case BodyFault::twice:
             return "has a linear relation that follows from the others";
         case BodyFault::undetermined:

@@ -8,7 +8,8 @@
 //
 // because sum m y = 0 and sum m y y^T = M 1: as far as masses go, c and the u_p are points of mass M each, and what
 // keeps the body rigid is rank (rank+1)/2 products of them, whatever the number of its atoms. A massless site is
-// carried along: its force goes to c and the u_p like the others'.
+// carried along: its force goes to c and the u_p like the others'. Where the masses lie in a plane, a site off it is at
+// a height along u_1 x u_2 (off_plane.cpp).
 //
 // Atoms between which linear relations hold, and nothing else, are a *loose* part: c and vectors u_p with other y, of
 // the same sums, as many as the relations leave free; no products of them are held. Distances between its atoms may be.
@@ -36,6 +37,8 @@ struct Body {
     std::vector<double> place;      // [n_atoms][3] the reference coordinates as they were given
     bool is_thick;                  // plain doubles do: neither thin nor with atoms far out for their mass
     std::vector<DoublePair> y;      // [n_atoms][rank]
+    std::vector<DoublePair> z;      // [n_atoms] of a site off the plane: + z u_1 x u_2; or empty: there is none
+    std::vector<double> height;     // the same over unit axes, rounded
     std::vector<DoublePair> share;  // [n_atoms][1 + rank]: m/M, m y_p / M
     std::vector<double> weights;    // [2][n_atoms][1 + rank] of a thick one: places and shares as BodyKind has them
     double excess[4][4];            // as in BodyKind
@@ -45,7 +48,7 @@ struct Body {
 
 // What makes a body impossible; `atom` within it, -1 if it is none in particular.
 struct BodyFault {
-    enum Cause { no_mass, one_mass, one_point, not_finite, size, outside, light, twice, undetermined } cause;
+    enum Cause { no_mass, one_mass, one_point, not_finite, size, off_line, light, twice, undetermined } cause;
     std::int32_t atom;
 };
 

@@ -54,6 +54,7 @@ void write(const System &system, const Place &place, const PairVector *z, const 
         out.tension[place.bonds[k]] = t * std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
     }
     if (virial) system.add_virial(system.now, system.t, 1, tally.virial);
+    if (virial && f.x) system.add_virial_of_sites(system.now, f, place, tally.virial);
     if (!out.g.x) return;
     for (std::int32_t i = 0; i < s.n_held; ++i) {
         double x[3] = {0, 0, 0};
@@ -115,7 +116,7 @@ struct ForcesWork final : Work {
                           system.c[row] = square ? product : 2.0 * product;
                       });
         PairVector *const z = system.a;
-        if (f.x) system.forces(f, place, z);
+        if (f.x) system.forces(system.now, f, place, z);
         for (std::int32_t n = 0; n < s.n_nodes; ++n)
             z[n] = f.x ? s.w[at(n)] * z[n] : PairVector{as_pair(0), as_pair(0), as_pair(0)};
         const Outcome outcome = system.project(system.now, moves ? system.c : nullptr, z, system.t);

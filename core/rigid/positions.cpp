@@ -24,6 +24,7 @@ double size_of(const PairVector &a) {
 struct PositionsWork final : Work {
     AtomArray r_ref, r, v;
     const Box &box_ref, &box;
+    const BoxRate *rate;
     double dt, *lambda, tolerance;
     int most_iterations;
     bool virial, report, check;
@@ -31,8 +32,8 @@ struct PositionsWork final : Work {
 
     PositionsWork(const Chains &chains, const AtomArray &r_ref_, const Box &box_ref_, const AtomArray &r_,
                   const AtomArray &v_, double dt_, double *lambda_, bool virial_, bool report_, bool check_)
-        : r_ref(r_ref_), r(r_), v(v_), box_ref(box_ref_), box(chains.box), dt(dt_), lambda(lambda_),
-          tolerance(chains.tolerance), most_iterations(chains.max_iterations), virial(virial_),
+        : r_ref(r_ref_), r(r_), v(v_), box_ref(box_ref_), box(chains.box), rate(chains.box_rate()), dt(dt_),
+          lambda(lambda_), tolerance(chains.tolerance), most_iterations(chains.max_iterations), virial(virial_),
           report(report_ || chains.keeps_outcomes), check(check_) {
         call.r_ref = r_ref;
         call.r = r;
@@ -40,6 +41,7 @@ struct PositionsWork final : Work {
         call.dt = dt;
         call.virial = virial;
         call.report = report;
+        call.flow = rate ? rate->L : nullptr;
         call.max_iterations = most_iterations;
         put_box(box, call.box);
         put_box(box_ref, call.box_ref);
@@ -66,7 +68,7 @@ struct PositionsWork final : Work {
                 return false;
         for (std::int32_t i = 0; i < s.n_held; ++i) {
             const double size = system.body(s.parts[at(s.part_of[at(i)])]).extent;
-            if (!(size_of(system.at_atom(system.now.q, i) - system.now.x[i]) <=
+            if (!(size_of(system.place_of(system.now, i) - system.now.x[i]) <=
                   std::max(2 * rounding, tolerance / 2 * size)))
                 return false;
         }
@@ -125,7 +127,7 @@ struct PositionsWork final : Work {
         if (outcome != Outcome::good) return outcome;
         double sum = 0;
         for (std::int32_t i = 0; i < s.n_movable; ++i)
-            sum += size_of(system.at_atom(system.now.q, i)) + size_of(system.now.x[i]) + size_of(system.reference.x[i]);
+            sum += size_of(system.place_of(system.now, i)) + size_of(system.now.x[i]) + size_of(system.reference.x[i]);
         if (!std::isfinite(sum)) return Outcome::not_finite;
         if (s.by_lengths && lambda) share(system);
         write_atoms(system, place);
@@ -140,7 +142,7 @@ struct PositionsWork final : Work {
         const Shape &s = system.shape();
         double *force = force_within(system);
         for (std::int32_t i = 0; i < s.n_held; ++i) {
-            const PairVector moved = system.at_atom(system.now.q, i) - system.now.x[i];
+            const PairVector moved = system.place_of(system.now, i) - system.now.x[i];
             const Vector3<double> push = rounded(s.mass[at(i)] * moved);
             *force++ = push.x, *force++ = push.y, *force++ = push.z;
         }
@@ -151,7 +153,7 @@ struct PositionsWork final : Work {
     void write_atoms(const System &system, const Place &place) const {
         const Shape &s = system.shape();
         for (std::int32_t i = 0; i < s.n_movable; ++i) {
-            const PairVector moved = system.at_atom(system.now.q, i) - system.now.x[i];
+            const PairVector moved = system.place_of(system.now, i) - system.now.x[i];
             const double *const from = system.raw + 3 * std::ptrdiff_t{i};
             const double x[3] = {rounded(as_pair(from[0]) + moved.x), rounded(as_pair(from[1]) + moved.y),
                                  rounded(as_pair(from[2]) + moved.z)};
@@ -171,7 +173,7 @@ struct PositionsWork final : Work {
         system.velocities(v, place, system.a);
         for (std::int32_t i = 0; i < s.n_held; ++i) {
             if (s.mass[at(i)] > 0) continue;
-            const Vector3<double> u = rounded(system.at_atom(system.a, i));
+            const Vector3<double> u = rounded(system.velocity_of(system.now, system.a, rate, i));
             const double x[3] = {u.x, u.y, u.z};
             write_atom(v, place.atoms[i], x);
         }

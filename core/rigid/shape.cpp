@@ -81,7 +81,15 @@ private:
         return are_of_one_part(bond) && body_of(s_.parts[at(s_.part_of[at(bond.i)])]).is_rigid;
     }
 
+    bool is_off_plane(std::int32_t atom) const {
+        if (atom >= s_.n_held) return false;
+        const Part &part = s_.parts[at(s_.part_of[at(atom)])];
+        const Body &body = body_of(part);
+        return !body.z.empty() && body.z[at(atom - part.first_atom)].hi != 0;
+    }
+
     void add_distance(const Bond &bond, std::int32_t number) {
+        if (is_off_plane(bond.i) || is_off_plane(bond.j)) throw Unsolvable{Unsolvable::off_plane, number};
         Row row{{}, number, as_pair(bond.length) * as_pair(bond.length), bond.length * bond.length, bond.length};
         add_end(bond.j, 1, row.entries);
         add_end(bond.i, -1, row.entries);

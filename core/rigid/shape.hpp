@@ -83,7 +83,7 @@ struct Shape {
 
 // Fills in all that follows from parts, atoms, bonds and masses. Throws Unsolvable.
 struct Unsolvable {
-    enum Cause { length_in_body, unconnected, too_many } cause;
+    enum Cause { length_in_body, off_plane, unconnected, too_many } cause;
     std::int32_t bond;
 };
 void complete(Shape &shape, const std::vector<Body> &bodies);

@@ -191,7 +191,7 @@ void System::velocities(const AtomArray &v, const Place &place, PairVector *node
     }
 }
 
-void System::forces(const AtomArray &f, const Place &place, PairVector *nodes) const {
+void System::forces(const Conformation &where, const AtomArray &f, const Place &place, PairVector *nodes) const {
     double x[3];
     for (const Part &part : s_.parts) {
         const Body &its = body(part);
@@ -203,6 +203,7 @@ void System::forces(const AtomArray &f, const Place &place, PairVector *nodes) c
             q[0] = q[0] + of_atom;
             for (std::int32_t p = 0; p < its.rank; ++p) q[1 + p] = q[1 + p] + its.y[at(i * its.rank + p)] * of_atom;
         }
+        if (!its.z.empty()) carry_to_axes(where, part, lifted_force(part, f, place), nodes);
     }
     for (std::int32_t i = s_.n_held; i < s_.n_atoms; ++i) {
         if (i < s_.n_movable) read_atom(f, place.atoms[i], x);

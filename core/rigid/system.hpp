@@ -42,10 +42,13 @@ public:
     void differentiate(const Conformation &at) const;
     // Nodes of a vector per atom, by masses: velocities. What sites have is not looked at.
     void velocities(const AtomArray &v, const Place &place, PairVector *nodes) const;
-    // Nodes of forces, on the centre and the u_p; sites' too.
-    void forces(const AtomArray &f, const Place &place, PairVector *nodes) const;
-    // What a vector per node is at an atom.
+    // Nodes of forces, on the centre and the u_p; sites' too, where the molecule is.
+    void forces(const Conformation &at, const AtomArray &f, const Place &place, PairVector *nodes) const;
+    // What a vector per node is at an atom; not at sites off the plane of a body, for which the next two are.
     PairVector at_atom(const PairVector *nodes, std::int32_t atom) const;
+    PairVector place_of(const Conformation &at, std::int32_t atom) const;
+    // v: velocities of the nodes.
+    PairVector velocity_of(const Conformation &at, const PairVector *v, const BoxRate *rate, std::int32_t atom) const;
     // d of a bond, between the nodes' places.
     PairVector bond_vector(const Conformation &at, std::int32_t bond) const;
 
@@ -67,6 +70,8 @@ public:
     void pulls(const Conformation &at, const DoublePair *t, PairVector *nodes) const;
     // xx xy xz yy yz zz of the sum of q (x) pull.
     void add_virial(const Conformation &at, const DoublePair *t, double factor, double *virial) const;
+    // Of carrying the forces of sites off the plane of a body to its masses.
+    void add_virial_of_sites(const Conformation &at, const AtomArray &f, const Place &place, double *virial) const;
 
     const Shape &shape() const { return s_; }
     const Body &body(const Part &part) const { return bodies_[part.body]; }
@@ -78,6 +83,10 @@ public:
     double *within;     // of molecules by lengths: [n_bonds][3] and [n_held][3] twice
 
 private:
+    // The sum of z f over sites off the plane of a part.
+    PairVector lifted_force(const Part &part, const AtomArray &f, const Place &place) const;
+    void carry_to_axes(const Conformation &at, const Part &part, const PairVector &lifted, PairVector *nodes) const;
+
     template <class T>
     std::int32_t assemble(const Factor<T> &f, const Conformation &rows, const Conformation &columns) const;
     template <class T>

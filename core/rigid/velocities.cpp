@@ -49,13 +49,14 @@ struct VelocitiesWork final : Work {
         if (outcome != Outcome::good) return outcome;
         double sum = 0;
         for (std::int32_t i = 0; i < s.n_movable; ++i) {
-            const Vector3<double> of_atom = rounded(system.at_atom(z, i)), x = rounded(system.now.x[i]);
+            const Vector3<double> of_atom = rounded(system.velocity_of(system.now, z, rate, i)),
+                                  x = rounded(system.now.x[i]);
             sum += std::fabs(of_atom.x) + std::fabs(of_atom.y) + std::fabs(of_atom.z) + x.x + x.y + x.z;
         }
         if (!std::isfinite(sum)) return Outcome::not_finite;
         if (s.by_lengths && lambda) share(system, place, z);
         for (std::int32_t i = 0; i < s.n_movable; ++i) {
-            const Vector3<double> of_atom = rounded(system.at_atom(z, i));
+            const Vector3<double> of_atom = rounded(system.velocity_of(system.now, z, rate, i));
             const double x[3] = {of_atom.x, of_atom.y, of_atom.z};
             write_atom(v, place.atoms[i], x);
         }

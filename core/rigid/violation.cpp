@@ -93,7 +93,7 @@ public:
                     each(std::fabs(off.hi) / body.square[0].hi, std::int64_t{-1}, place.atoms[part.first_atom]);
                 }
             for (std::int32_t i = part.first_atom; i < part.first_atom + body.n_atoms; ++i)
-                each(2 * size_of(system.at_atom(system.now.q, i) - system.now.x[i]) / body.extent, std::int64_t{-1},
+                each(2 * size_of(system.place_of(system.now, i) - system.now.x[i]) / body.extent, std::int64_t{-1},
                      place.atoms[i]);
         }
     }
@@ -112,7 +112,8 @@ public:
             double x[3];
             read_atom(v, place.atoms[i], x);
             const PairVector of_atom = {as_pair(x[0]), as_pair(x[1]), as_pair(x[2])};
-            each(size_of(system.at_atom(system.b, i) - of_atom) * system.body(s.parts[at(s.part_of[at(i)])]).extent,
+            each(size_of(system.velocity_of(system.now, system.b, rate, i) - of_atom) *
+                     system.body(s.parts[at(s.part_of[at(i)])]).extent,
                  -1);
         }
     }

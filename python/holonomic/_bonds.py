@@ -148,7 +148,8 @@ class Bonds:
     def add_rigid(self, bodies: Bodies, places: Places, bonds: Pairs = (), lengths: Floats = ()) -> None:
         """Adds rigid bodies, any number of atoms held as one whole each, and bonds at them.
 
-        bodies   the atoms of each body, a list of lists; in a body an atom of mass 0 is a massless site
+        bodies   the atoms of each body, a list of lists; in a body an atom of mass 0 is a massless site, which may be out of
+                 the plane of the others (TIP5P)
         places   reference coordinates of these atoms, an array (n, 3) for each body, in any frame: what it looks like
         bonds    (n, 2) integers, bonds of bodies with other atoms, and between other atoms of these molecules
         lengths  (n,) lengths, or one number for all

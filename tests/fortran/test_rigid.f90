@@ -9,6 +9,7 @@ program test_rigid
 
    call many_are_as_one_by_one()
    call a_bond_pulls_at_a_body()
+   call lone_pairs_follow()
    call mistakes_are_named()
    call finish()
 
@@ -51,6 +52,31 @@ contains
       call chains%add_rigid([1, 2, 3], r(:, :3), bonds=reshape([4, 1], [2, 1]), lengths=[1.0_real64])
       call chains%forces(r, f=f, tension=tension)
       call check(abs(tension(1) - 5) < 16*eps, "the tension is the force on the site")
+      call chains%destroy()
+   end subroutine
+
+   subroutine lone_pairs_follow()
+      type(hol_chains) :: chains
+      real(real64) :: r(3, 4), from(3, 4), v(3, 4), f(3, 4), g(3, 4)
+
+      call test("a site out of the plane")
+      from = reshape([0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 2], [3, 4])*1.0_real64
+      v = 0
+      v(3, 1:3) = [0, 1, 0]     ! turns about the second axis
+      v(:, 4) = 7               ! of a site: not looked at
+      f = 0
+      f(1, 4) = 1
+      call chains%create([1.0_real64, 1.0_real64, 1.0_real64, 0.0_real64])
+      call chains%add_rigid([1, 2, 3, 4], from)
+      call chains%project_velocities(from, v)
+      call check(all(abs(v(:, 4) - [-2, 0, 0]) < 8*eps), "its velocity")
+      call chains%forces(from, f=f, g=g)
+      call check(abs(sum(f(1, :) + g(1, :)) - 1) < 8*eps .and. abs(g(1, 4) + 1) < 2*eps, "the force is on the masses")
+      call check(abs(sum(from(1, :)*(f(3, :) + g(3, :)) - from(3, :)*(f(1, :) + g(1, :))) + 2) < 16*eps, "and its torque")
+      r = from + 0.01_real64*v
+      call chains%project_positions(from, r, 0.01_real64)
+      call check(abs(norm2(r(:, 4) - r(:, 1)) - 2) < 8*eps .and. abs(norm2(r(:, 4) - r(:, 2)) - sqrt(5.0_real64)) < 8*eps, &
+                 "its place")
       call chains%destroy()
    end subroutine
 

@@ -49,6 +49,29 @@ class Bodies(unittest.TestCase):
         np.testing.assert_allclose(parts[:, 1], (parts[:, 0] + parts[:, 2]) / 2, atol=1e-13)
         self.assertLess(molecules.violation(r, v).rate, 1e-13)
 
+    def test_lone_pairs_carry_their_forces_to_the_masses(self):
+        rng = np.random.default_rng(4)
+        places = np.array([(0, 0, 0), (0.586, 0.757, 0), (0.586, -0.757, 0), (-0.404, 0, 0.572), (-0.404, 0, -0.572)])
+        masses = np.array([16.0, 1, 1, 0, 0])
+        molecules = hol.Molecules(masses)
+        molecules.add_rigid([range(5)], [places])
+        self.assertEqual(molecules.degrees_of_freedom(), 6)
+        turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+        r = places @ (turn * np.linalg.det(turn)).T + rng.normal(size=3)
+        f = rng.normal(size=r.shape)
+        whole = f.copy()
+        molecules.spread_forces(r, whole)
+        np.testing.assert_allclose(whole[3:], 0, atol=1e-15)
+        np.testing.assert_allclose(whole.sum(0), f.sum(0), atol=1e-14)
+        np.testing.assert_allclose(np.cross(r, whole).sum(0), np.cross(r, f).sum(0), atol=1e-14)
+        centre = masses @ r / masses.sum()
+        omega = rng.normal(size=3)
+        v = np.cross(omega, r - centre)
+        wanted = v.copy()
+        v[3:] = rng.normal(size=(2, 3))
+        molecules.project_velocities(r, v)
+        np.testing.assert_allclose(v, wanted, atol=1e-14)
+
     def test_crude_positions_of_bodies(self):
         rng = np.random.default_rng(3)
         places = rng.normal(size=(5, 3))

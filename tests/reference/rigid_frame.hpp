@@ -21,6 +21,7 @@ struct rigid_frame {
     REAL mass{0};
     std::vector<std::array<REAL, 3>> y;      // [atoms]
     std::array<vector3<REAL>, 3> vectors{};  // U_p
+    std::vector<REAL> z;                     // [atoms] of sites off a plane: + z U_1 x U_2
     body_facts facts;
 
     /** Lower triangular, or turned to principal axes. */
@@ -29,9 +30,10 @@ struct rigid_frame {
         centre(p, atoms);
         if (!(mass > REAL(0))) return;
         moments(p, atoms);
-        flatten();
+        flatten(p, atoms);
         factorize(p, atoms);
         if (principal) turn();
+        lift();
     }
 
 private:
@@ -41,7 +43,7 @@ private:
         return REAL(1e-8);
     }
 
-    std::vector<vec> x_;
+    std::vector<vec> x_, off_;
     std::array<vec, 3> s_{};
 
     void centre(const rigid_problem &p, const std::vector<std::size_t> &atoms)
@@ -92,9 +94,18 @@ private:
         if (square > thin() * thin() / REAL(100) && square < thin() * thin() * REAL(100)) facts.doubtful = true;
     }
 
-    /** Atoms of a thin body onto its line or plane. */
-    void flatten()
+    void lift()
     {
+        z.assign(y.size(), REAL(0));
+        if (rank != 2) return;
+        const vec normal = cross_product(vectors[0], vectors[1]);
+        for (std::size_t a = 0; a < z.size(); ++a) z[a] = product(off_[a], normal) / product(normal, normal);
+    }
+
+    /** Atoms of a thin body onto its line or plane, but for sites that are clearly off a plane. */
+    void flatten(const rigid_problem &p, const std::vector<std::size_t> &atoms)
+    {
+        off_.assign(x_.size(), {});
         // trace ~ l1, minors ~ l1 l2, determinant = l1 l2 l3, each to a factor of three
         const REAL trace = s_[0][0] + s_[1][1] + s_[2][2];
         if (!(trace > REAL(0))) return;
@@ -109,7 +120,7 @@ private:
             note_ratio(det / (minors * trace));
         }
         note_ratio(second);
-        REAL extent(0), farthest(0);
+        REAL extent(0);
         const vec axis = rank == 1 ? leading(s_) : rank == 2 ? leading(cofactors) : vec{};
         for (vec &x : x_) {
             if (length(x) > extent) extent = length(x);
@@ -119,12 +130,18 @@ private:
             add_times(across, -along, axis);
             const vec off = rank == 1 ? across : difference(x, across);
             x = difference(x, off);
-            if (length(off) > farthest) farthest = length(off);
+            off_[static_cast<std::size_t>(&x - x_.data())] = off;
         }
         const REAL most = REAL(4) * thin() * extent;
         facts.rank = static_cast<int>(rank);
-        facts.refused = farthest > most;
-        if (farthest > most / REAL(10) && farthest < most * REAL(10)) facts.doubtful = true;
+        for (std::size_t a = 0; a < atoms.size(); ++a) {
+            const REAL far = length(off_[a]);
+            if (far > most / REAL(10) && far < most * REAL(10)) facts.doubtful = true;
+            if (rank == 2 && p.mass[atoms[a]] == 0 && far > most)
+                facts.off_plane.push_back(atoms[a]);
+            else
+                facts.refused = facts.refused || far > most, off_[a] = {};
+        }
     }
 
     /** S = L L^T with the largest pivots first; y = L^-1 x. */

@@ -56,6 +56,13 @@ vec at(const combination &c, const std::vector<vec> &nodes)
 
 enum class kind { points, vectors };
 
+/** A site off the plane of a body: + z first x second. */
+struct lifted {
+    std::size_t atom;
+    combination first, second;
+    real z;
+};
+
 class node_system
 {
 public:
@@ -63,6 +70,7 @@ public:
     std::vector<combination> of_atom;  // nodes of an atom
     std::vector<combination> of_node;  // atoms of a node
     std::vector<bool> in_body;         // atoms
+    std::vector<lifted> sites;
     std::vector<constraint> rows;
 
     node_system(const rigid_problem &p, kind which) : of_atom(p.n_atoms()), in_body(p.n_atoms(), false)
@@ -71,13 +79,15 @@ public:
             const rigid_frame<real> frame(p, atoms, which == kind::vectors);
             which == kind::points ? add_points(p, atoms, frame) : add_vectors(p, atoms, frame);
         }
+        for (const loose_part &part : p.parts) add_part(p, part, which == kind::vectors);
         for (std::size_t i = 0; i < p.n_atoms(); ++i) {
             if (in_body[i]) continue;
             of_atom[i] = {{w.size(), real(1)}};
             of_node.push_back({{i, real(1)}});
             w.push_back(p.mass[i] > 0 ? real(1) / real(p.mass[i]) : real(0));
         }
-        for (std::size_t k = 0; k < p.pairs.size(); ++k) add_bond(p, k);
+        for (std::size_t k = 0; k < p.pairs.size(); ++k)
+            if (p.implied.empty() || !p.implied[k]) add_bond(p, k);
     }
 
     std::vector<vec> nodes(const std::vector<double> &array) const
@@ -103,6 +113,29 @@ public:
                 add_times(q[s.of], of_sizes ? absolute(s.factor) : s.factor,
                           of_sizes ? sizes(row_of(array, a)) : row_of(array, a));
         return q;
+    }
+
+    /** What the forces on sites off planes do at q, on top of those above. */
+    void add_lifted(const rigid_problem &p, const std::vector<vec> &q, bool of_sizes, std::vector<vec> &to) const
+    {
+        for (const lifted &site : sites) {
+            vec f = row_of(p.f, site.atom), first = at(site.first, q), second = at(site.second, q), on[2];
+            if (of_sizes) {
+                on[0] = product_sizes(second, f), on[1] = product_sizes(f, first);
+            } else {
+                on[0] = cross_product(second, f), on[1] = cross_product(f, first);
+            }
+            for (int which = 0; which < 2; ++which)
+                for (const share &s : which ? site.second : site.first)
+                    add_times(to[s.of], of_sizes ? absolute(s.factor * site.z) : s.factor * site.z, on[which]);
+        }
+    }
+    static vec product_sizes(const vec &a, const vec &b)
+    {
+        vec out;
+        for (std::size_t x = 0; x < 3; ++x)
+            out[x] = absolute(a[(x + 1) % 3] * b[(x + 2) % 3]) + absolute(a[(x + 2) % 3] * b[(x + 1) % 3]);
+        return out;
     }
 
     struct gradient {
@@ -154,6 +187,10 @@ private:
                  {real(-1), real(1), real(-1)},
                  {real(-1), real(-1), real(1)}};
         const real parts(static_cast<int>(k));
+        std::array<combination, 2> axes;  // of a plane: sums over points of q / 3
+        for (std::size_t d = 0; k == 3 && d < 2; ++d)
+            for (std::size_t b = 0; b < k; ++b) axes[d].push_back({first + b, q[b][d] / parts});
+        add_sites(atoms, frame, axes);
         for (std::size_t b = 0; b < k; ++b) {
             w.push_back(parts / frame.mass);
             of_node.emplace_back();
@@ -179,9 +216,89 @@ private:
             }
     }
 
+    void add_sites(const std::vector<std::size_t> &atoms, const rigid_frame<real> &frame,
+                   const std::array<combination, 2> &axes)
+    {
+        for (std::size_t a = 0; a < atoms.size(); ++a)
+            if (frame.z[a] != real(0)) sites.push_back({atoms[a], axes[0], axes[1], frame.z[a]});
+    }
+
+    /** Coordinates of unit mass: those of the atoms that lead, whitened by a Cholesky factor of their masses, from the
+     * first or from the last one on. */
+    void add_part(const rigid_problem &p, const loose_part &part, bool from_last)
+    {
+        const std::vector<std::vector<real>> leads = leaders(part);
+        const std::size_t n = part.atoms.size(), m = leads[0].size();
+        std::vector<std::vector<real>> y(n, std::vector<real>(m)), l(m, std::vector<real>(m));
+        for (std::size_t a = 0; a < n; ++a)
+            for (std::size_t c = 0; c < m; ++c) y[a][c] = leads[a][from_last ? m - 1 - c : c];
+        for (std::size_t c = 0; c < m; ++c)
+            for (std::size_t d = 0; d <= c; ++d) {
+                for (std::size_t a = 0; a < n; ++a) l[c][d] += real(p.mass[part.atoms[a]]) * y[a][c] * y[a][d];
+                for (std::size_t e = 0; e < d; ++e) l[c][d] -= l[c][e] * l[d][e];
+                l[c][d] = c == d ? square_root(l[c][d]) : l[c][d] / l[d][d];
+            }
+        for (auto &row : y)  // L y' = y
+            for (std::size_t c = 0; c < m; ++c) {
+                for (std::size_t e = 0; e < c; ++e) row[c] -= l[c][e] * row[e];
+                row[c] /= l[c][c];
+            }
+        const std::size_t first = w.size();
+        w.insert(w.end(), m, real(1));
+        of_node.resize(first + m);
+        for (std::size_t a = 0; a < n; ++a) {
+            const std::size_t atom = part.atoms[a];
+            in_body[atom] = true;
+            for (std::size_t c = 0; c < m; ++c) {
+                of_atom[atom].push_back({first + c, y[a][c]});
+                if (p.mass[atom] > 0) of_node[first + c].push_back({atom, real(p.mass[atom]) * y[a][c]});
+            }
+        }
+    }
+
+    /** Atoms as sums of those that lead, by Gauss and Jordan's elimination; coefficients add up to 0 as the library has
+     * it, by the largest one. */
+    static std::vector<std::vector<real>> leaders(const loose_part &part)
+    {
+        const std::size_t n = part.atoms.size();
+        std::vector<std::vector<real>> rows;
+        for (const std::vector<double> &c : part.relations) {
+            std::size_t most = 0;
+            real sum(0);
+            for (std::size_t a = 0; a < n; ++a)
+                if (std::fabs(c[a]) > std::fabs(c[most])) most = a;
+            rows.emplace_back();
+            for (const double x : c) rows.back().push_back(real(x) / real(c[most])), sum += rows.back().back();
+            rows.back()[most] -= sum;
+        }
+        std::vector<std::ptrdiff_t> row_of(n, -1);
+        for (std::size_t step = 0; step < rows.size(); ++step) {
+            std::size_t row = step, column = 0;
+            for (std::size_t k = step; k < rows.size(); ++k)
+                for (std::size_t a = 0; a < n; ++a)
+                    if (absolute(rows[k][a]) > absolute(rows[row][column])) row = k, column = a;
+            std::swap(rows[step], rows[row]);
+            row_of[column] = static_cast<std::ptrdiff_t>(step);
+            const real pivot = rows[step][column];
+            for (real &x : rows[step]) x /= pivot;
+            for (std::size_t k = 0; k < rows.size(); ++k) {
+                const real factor = rows[k][column];
+                for (std::size_t a = 0; a < n && k != step; ++a) rows[k][a] -= factor * rows[step][a];
+            }
+        }
+        std::vector<std::vector<real>> of(n);
+        for (std::size_t a = 0; a < n; ++a)
+            for (std::size_t lead = 0; lead < n; ++lead)
+                if (row_of[lead] < 0)
+                    of[a].push_back(row_of[a] < 0 ? real(a == lead ? 1 : 0)
+                                                  : -rows[static_cast<std::size_t>(row_of[a])][lead]);
+        return of;
+    }
+
     void add_vectors(const rigid_problem &p, const std::vector<std::size_t> &atoms, const rigid_frame<real> &frame)
     {
         const std::size_t first = w.size();
+        add_sites(atoms, frame, {{{{first + 1, real(1)}}, {{first + 2, real(1)}}}});
         for (std::size_t d = 0; d <= frame.rank; ++d) {
             w.push_back(real(1) / frame.mass);
             of_node.emplace_back();
@@ -261,6 +378,8 @@ public:
         outcome o;
         o.z = s_.forces(p_.f, false);
         o.z_size = s_.forces(p_.f, true);
+        s_.add_lifted(p_, q_, false, o.z);
+        s_.add_lifted(p_, q_, true, o.z_size);
         const std::vector<vec> u = s_.nodes(p_.v), u_size = s_.node_sizes(p_.v);
         std::vector<real> c, c_size;
         for (const constraint &k : s_.rows) {
@@ -429,7 +548,26 @@ rigid_level solver::level(const outcome &o, const real &unit, bool moved) const
             for (std::size_t y = 0; y < 3; ++y)
                 virial[3 * x + y] -= t * (left[x] * right[y] + right[x] * left[y]).scaled(-1);
     }
+    for (const lifted &site : s_.sites) {
+        if (moved) continue;
+        const vec f = row_of(p_.f, site.atom), first = at(site.first, q_), second = at(site.second, q_);
+        const vec normal = cross_product(first, second), on[2] = {cross_product(second, f), cross_product(f, first)};
+        for (std::size_t x = 0; x < 3; ++x)
+            for (std::size_t y = 0; y < 3; ++y)
+                virial[3 * x + y] += site.z * (first[x] * on[0][y] + second[x] * on[1][y] - normal[x] * f[y]);
+    }
     for (std::size_t i = 0; i < 9; ++i) to.virial[i] = static_cast<long double>(virial[i]);
+    std::vector<vec> lift(n);  // velocities, or places, of sites off planes
+    for (const lifted &site : s_.sites) {
+        if (!moved || o.z.empty()) continue;
+        const vec first = at(site.first, o.z), second = at(site.second, o.z);
+        if (o.z_size.empty()) {
+            add_times(lift[site.atom], site.z, cross_product(first, second));
+            continue;
+        }
+        add_times(lift[site.atom], site.z, cross_product(first, at(site.second, q_)));
+        add_times(lift[site.atom], site.z, cross_product(at(site.first, q_), second));
+    }
     for (std::size_t i = 0; i < n; ++i) {
         vec z{}, g{};
         for (const share &s : s_.of_atom[i]) add_times(z, s.factor, o.z[s.of]);
@@ -439,7 +577,7 @@ rigid_level solver::level(const outcome &o, const real &unit, bool moved) const
             for (std::size_t x = 0; x < 3; ++x) g[x] = real(p_.mass[i]) * z[x] - real(p_.f[3 * i + x]);
         for (std::size_t x = 0; x < 3; ++x) {
             to.g.push_back(static_cast<long double>(g[x]));
-            to.moved.push_back(static_cast<long double>(z[x]));
+            to.moved.push_back(static_cast<long double>(z[x] + lift[i][x]));
         }
     }
     return to;
@@ -460,7 +598,18 @@ bool put_scales(const solver &of, const outcome &o, const real &unit, bool moved
         for (const auto &g : of.g_[k]) pull[g.node] += t * length(g.g);
         virial += t * length(at(row.left, of.q_)) * length(at(row.right, of.q_));
     }
+    for (const lifted &site : s.sites)
+        if (!moved)
+            virial += real(3) * absolute(site.z) * length(row_of(of.p_.f, site.atom)) * length(at(site.first, of.q_)) *
+                      length(at(site.second, of.q_));
     to.virial_scale = static_cast<long double>(virial);
+    const auto size_of = [&](const combination &all) {
+        real sum(0);
+        for (const share &c : all)
+            sum += absolute(c.factor) *
+                   ((o.z_size.empty() ? real(0) : largest(o.z_size[c.of])) + s.w[c.of] * pull[c.of] / absolute(unit));
+        return sum;
+    };
     for (std::size_t i = 0; i < of.p_.n_atoms(); ++i) {
         real z(0), g(0);
         for (const share &c : s.of_atom[i]) {
@@ -469,10 +618,28 @@ bool put_scales(const solver &of, const outcome &o, const real &unit, bool moved
             if (!s.in_body[i]) g = pull[c.of];
         }
         if (s.in_body[i] && !moved) g = real(of.p_.mass[i]) * z + largest(row_of(of.p_.f, i));
+        for (const lifted &site : s.sites)
+            if (site.atom == i)
+                z += absolute(site.z) * (size_of(site.first) * length(at(site.second, of.q_)) +
+                                         size_of(site.second) * length(at(site.first, of.q_)));
         if (o.z_size.empty())  // places: what they are counts beside what moves them
             z += largest({real(to.moved[3 * i]), real(to.moved[3 * i + 1]), real(to.moved[3 * i + 2])});
         to.moved_scale.push_back(static_cast<long double>(z));
         to.g_scale.push_back(static_cast<long double>(g));
+    }
+    // All nodes of a loose part are in all of its atoms, though what they are made of may be zero: roundings of twice
+    // the precision are allowed there.
+    const auto lift_to_largest = [](const std::vector<std::size_t> &which, std::vector<long double> &scale) {
+        long double most = 0;
+        for (const std::size_t i : which) most = std::max(most, scale[i]);
+        for (const std::size_t i : which) scale[i] = std::max(scale[i], 0x1p-40L * most);
+    };
+    for (const loose_part &part : of.p_.parts) {
+        std::vector<std::size_t> bonds(to.lambda_scale.size());
+        for (std::size_t k = 0; k < bonds.size(); ++k) bonds[k] = k;
+        lift_to_largest(part.atoms, to.g_scale);
+        lift_to_largest(part.atoms, to.moved_scale);
+        lift_to_largest(bonds, to.lambda_scale);
     }
     const auto alike = [](long double a, long double b, long double scale) {
         const long double off = a < b ? b - a : a - b;

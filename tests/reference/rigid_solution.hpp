@@ -17,14 +17,22 @@
 namespace reference
 {
 
-/** A set of bodies, other atoms, and bonds. */
+/** Atoms between which sums c_i r_i = 0 hold, rows of coefficients that add up to 0, and nothing else. */
+struct loose_part {
+    std::vector<std::size_t> atoms;
+    std::vector<std::vector<double>> relations;  ///< [..][atoms]
+};
+
+/** A set of bodies, loose parts, other atoms, and bonds. */
 struct rigid_problem {
     std::vector<double> mass;                     ///< [n_atoms], 0: a massless site, -1: held fixed
     std::vector<double> place;                    ///< [n_atoms][3] reference coordinates of atoms of bodies
     std::vector<double> r, v, f;                  ///< [n_atoms][3]
     std::vector<std::vector<std::size_t>> bodies; /**< their atoms */
+    std::vector<loose_part> parts;
     std::vector<std::array<std::size_t, 2>> pairs;
     std::vector<double> length;
+    std::vector<bool> implied;  ///< bonds that others imply, which are left out; or empty: none
 
     std::size_t n_atoms() const
     {
@@ -50,7 +58,8 @@ struct rigid_level {
 struct body_facts {
     int rank = 0;           ///< 1: on a line, 2: in a plane, 3; an axis below 1e-8 of the longest counts as none
     bool doubtful = false;  ///< an axis, or the distance of an atom from line or plane, is within a decade of that
-    bool refused = false;   ///< an atom is farther from the line or plane of the masses than that
+    bool refused = false;   ///< a mass is farther from the line or plane of the others than that, or a site from a line
+    std::vector<std::size_t> off_plane;  ///< massless sites that are farther from a plane
 };
 body_facts facts_of_body(const rigid_problem &p, std::size_t body);
 

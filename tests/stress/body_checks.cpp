@@ -65,7 +65,7 @@ void check_kept(const hostile_body &m, const molecule_results &alone, molecule_v
  */
 long double thinness(const hostile_body &m)
 {
-    if (m.p.bodies.size() > 1 || m.p.n_atoms() > m.p.bodies[0].size()) return 0;
+    if (m.p.bodies.size() != 1 || m.p.n_atoms() > m.p.bodies[0].size()) return 0;
     const std::vector<double> axes = reference::shape_of_body(m.p, m.p.bodies[0]).length;
     const auto ends = std::minmax_element(axes.begin(), axes.end());
     const double ratio = *ends.second / *ends.first;
@@ -85,6 +85,23 @@ void check_lengths(const hostile_body &m, const numbers &r, molecule_verdict &ou
         }
         out.note(M_LENGTH, std::fabs(error) / (8 * eps * a * (a + extent)));
     }
+}
+
+/**
+ * Of what depends on each other multipliers are not unique. Relations and lengths are those of the positions, whose
+ * roundings count as the groups are flat: `slack` more.
+ */
+void check_listed(const hostile_body &m, const rigid_solution &exact, const molecule_results &alone, long double k,
+                  molecule_verdict &out)
+{
+    constexpr long double slack = 64;
+    if (alone.forces == HOL_OK) check_level(alone.g, exact.forces.g, exact.forces.g_scale, 3, slack * k, M_FORCE, out);
+    if (alone.velocities == HOL_OK)
+        check_level(alone.v, exact.velocities.moved, exact.velocities.moved_scale, 3, slack * k, M_VELOCITY, out);
+    if (m.dt == 0) return;
+    out.note(M_REFUSED_STEP, alone.positions != HOL_OK && exact.positions.there);
+    if (alone.positions != HOL_OK || !exact.positions.there) return;
+    check_level(alone.r, exact.positions.moved, exact.positions.moved_scale, 3, slack * k, M_POSITION, out);
 }
 
 /** What an atom may be: a site that is no atom of a body is there in no case. */
@@ -130,7 +147,8 @@ placement place(const std::vector<const hostile_body *> &parts, std::uint64_t sh
             a.drift[3 * i + x] = drifted[owner[i]][3 * own + x];
         }
     }
-    std::vector<std::int64_t> sizes, atoms, pairs;
+    std::vector<std::int64_t> sizes, atoms, pairs, terms, of_terms;
+    numbers coefficients;
     struct listed {
         std::size_t molecule, number;
     };
@@ -138,6 +156,16 @@ placement place(const std::vector<const hostile_body *> &parts, std::uint64_t sh
     for (std::size_t m = 0; m < parts.size(); ++m) {
         a.bonds[m].resize(parts[m]->p.length.size());
         for (std::size_t k = 0; k < parts[m]->p.length.size(); ++k) bonds.push_back({m, k});
+        for (const reference::loose_part &part : parts[m]->p.parts)
+            for (const std::vector<double> &row : part.relations) {
+                terms.push_back(0);
+                for (std::size_t i = 0; i < row.size(); ++i) {
+                    if (row[i] == 0) continue;
+                    of_terms.push_back(static_cast<std::int64_t>(a.atoms[m][part.atoms[i]]));
+                    coefficients.push_back(row[i]);
+                    ++terms.back();
+                }
+            }
         for (std::size_t b = 0; b < parts[m]->p.bodies.size(); ++b) {
             bodies.push_back({m, b});
             for (const std::size_t i : parts[m]->p.bodies[b]) {
@@ -147,25 +175,33 @@ placement place(const std::vector<const hostile_body *> &parts, std::uint64_t sh
             sizes.push_back(static_cast<std::int64_t>(parts[m]->p.bodies[b].size()));
         }
     }
-    for (std::size_t i = bonds.size(); shuffle && i-- > 1;)
+    const bool mixed =
+        shuffle && parts[0]->shape != LISTED;  // which bonds of a list are its base depends on their order
+    for (std::size_t i = bonds.size(); mixed && i-- > 1;)
         std::swap(bonds[i], bonds[static_cast<std::size_t>(random_integer(&stream, 0, static_cast<std::int64_t>(i)))]);
     for (std::size_t k = 0; k < bonds.size(); ++k) {
         const hostile_body &m = *parts[bonds[k].molecule];
         const std::size_t own = bonds[k].number;
         std::size_t ends[2] = {m.p.pairs[own][0], m.p.pairs[own][1]};
-        if (shuffle && random_uniform(&stream) < 0.5) std::swap(ends[0], ends[1]);
+        if (mixed && random_uniform(&stream) < 0.5) std::swap(ends[0], ends[1]);
         for (const std::size_t e : ends) pairs.push_back(static_cast<std::int64_t>(a.atoms[bonds[k].molecule][e]));
-        length.push_back(m.p.length[own]);
+        length.push_back(m.listed.empty() ? m.p.length[own] : m.listed[own]);
         a.bonds[bonds[k].molecule][own] = k;
         a.rhs.push_back(m.right_hand_side()[own]);
     }
     hol_chains *chains = nullptr;
     a.status = hol_chains_create(static_cast<std::int64_t>(owner.size()), mass.data(), &chains);
     a.chains.reset(chains);
-    if (a.status == HOL_OK)
-        a.status =
-            hol_chains_add_rigid(chains, static_cast<std::int64_t>(sizes.size()), sizes.data(), atoms.data(),
-                                 places.data(), static_cast<std::int64_t>(bonds.size()), pairs.data(), length.data());
+    const std::int64_t n_bonds = static_cast<std::int64_t>(bonds.size());
+    if (a.status != HOL_OK) {
+    } else if (parts[0]->shape == LISTED) {
+        a.status = hol_chains_add_bonds(chains, n_bonds, pairs.data(), length.data());
+    } else if (parts[0]->shape == RELATED) {
+        a.status = hol_chains_add_linear(chains, static_cast<std::int64_t>(terms.size()), terms.data(), of_terms.data(),
+                                         coefficients.data(), n_bonds, pairs.data(), length.data());
+    } else
+        a.status = hol_chains_add_rigid(chains, static_cast<std::int64_t>(sizes.size()), sizes.data(), atoms.data(),
+                                        places.data(), n_bonds, pairs.data(), length.data());
     a.molecule_of_bond.assign(bonds.size(), -1);
     return a;
 }
@@ -193,6 +229,11 @@ molecule_verdict check_alone(const hostile_body &m, const rigid_solution &exact,
     if (!facts.regular) return out;
     // Below what is promised an answer may be refused, but none may be wrong.
     const long double k = (16 + std::sqrt(static_cast<long double>(exact.n_constraints)) + thinness(m)) * eps;
+    // Of what depends multipliers are not unique, and relations are those of positions that are rounded.
+    if (m.shape == LISTED) {
+        out.note(M_REFUSED, hol_chains_degrees_of_freedom(a.chains.get(), 3) != m.freedoms);
+        return check_listed(m, exact, alone, k, out), out;
+    }
     if (alone.forces == HOL_OK) {
         check_level(alone.lambda, exact.forces.lambda, exact.forces.lambda_scale, 1, k, M_LAMBDA, out);
         check_level(alone.g, exact.forces.g, exact.forces.g_scale, 3, k, M_FORCE, out);
@@ -243,11 +284,14 @@ void check_units(const hostile_body &c, molecule_results alone, int m, int l, in
     check_same(alone, there, M_UNITS, out);
 }
 
-/** Places stay: which of two mirror images a body is the positions say. */
+/** Places stay unless a site is off a plane: which of two mirror images a body is the positions say. */
 void check_mirror(const hostile_body &c, molecule_results alone, molecule_verdict &out)
 {
     hostile_body other = c;
     mirror(other.p.r), mirror(other.p.v), mirror(other.p.f);
+    for (std::size_t b = 0; b < c.p.bodies.size(); ++b)
+        if (!reference::facts_of_body(c.p, b).off_plane.empty())
+            for (const std::size_t atom : c.p.bodies[b]) other.p.place[3 * atom] *= -1;
     molecule_results there = compute(place({&other}, 0), 1);
     for (numbers *x : {&there.g, &there.v, &there.r, &there.moved}) mirror(*x);
     without_signs_of_zeros(alone);
@@ -278,11 +322,18 @@ void check_invariances(const std::vector<hostile_body> &molecules, std::uint64_t
     random_stream stream = random_seed(shuffle);
     for (std::size_t k = 0; k < parts.size(); ++k) {
         molecule_verdict &verdict = out[number[k]];
-        const molecule_results alone = compute(place({parts[k]}, 0), 1);
+        const auto compared = [&](molecule_results x) {
+            // Lists without bodies are ordinary molecules, which number their bonds in an order of their own.
+            if (parts[k]->shape == LISTED)
+                for (numbers *of_bonds : {&x.lambda, &x.solved, &x.mu, &x.position_lambda}) of_bonds->clear();
+            return x;
+        };
+        const molecule_results alone = compared(compute(place({parts[k]}, 0), 1));
         for (const molecule_results *other : {&first, &again, &views, &threads})
-            check_same(alone, part_of(*other, together, k), M_SAME_BITS, verdict);
+            check_same(alone, compared(part_of(*other, together, k)), M_SAME_BITS, verdict);
         const auto exponent = [&] { return static_cast<int>(random_integer(&stream, -20, 20)); };
-        const int m = exponent(), l = exponent(), t = exponent();
+        const int m = exponent(), drawn = exponent(), t = exponent();
+        const int l = parts[k]->shape == LISTED ? 0 : drawn;  // decimals are of one unit
         check_units(*parts[k], alone, m, l, t, verdict);
         check_mirror(*parts[k], alone, verdict);
     }

@@ -60,7 +60,7 @@ struct turn {
 class maker
 {
 public:
-    maker(hostile_body &m, molecule_dice &d) : m_(m), d_(d)
+    maker(hostile_body &m, molecule_dice &d) : m_(m), d_(d), lift_{random_seed(m.seed + 37)}
     {
     }
 
@@ -85,7 +85,7 @@ public:
 
 private:
     hostile_body &m_;
-    molecule_dice &d_;
+    molecule_dice &d_, lift_;  // the latter for sites off planes alone
 
     bool has(unsigned feature) const
     {
@@ -119,6 +119,7 @@ private:
                      offset = has(BODY_FAR_OFF) ? d_.decades(0, 4) : d_.uniform(0, 3), odd = d_.decades(-6, 6);
         const std::int64_t style = has(BODY_MASSES_APART) ? d_.whole(0, 1) : 2;
         const turn of_places(d_), of_space(d_);
+        const bool flat = second > 1e-3 && third < 1e-9;
         std::vector<std::array<long double, 3>> x;
         for (std::int64_t a = 0; a < n; ++a)
             x.push_back({size * static_cast<long double>(d_.normal()),
@@ -134,6 +135,7 @@ private:
             if (std::fabs(whole) < 0.5L) weight[0] += 2, whole += 2;
             for (std::size_t a = 0; a < massive; ++a)
                 for (std::size_t c = 0; c < 3; ++c) site[c] += weight[a] / whole * x[a][c];
+            if (flat && lift_.chance(0.5)) site[2] += size * (lift_.chance(0.5) ? 1 : -1) * lift_.decades(-6, 1);
             x.push_back(site);
         }
         p.bodies.emplace_back();
@@ -364,41 +366,6 @@ double fastest(const rigid_problem &p)
     return most;
 }
 
-void draw_motion(hostile_body &m, molecule_dice &d)
-{
-    rigid_problem &p = m.p;
-    const std::size_t n = p.n_atoms();
-    const std::size_t special = static_cast<std::size_t>(d.whole(0, static_cast<std::int64_t>(n) - 1));
-    const bool at_rest = d.chance(0.15);
-    p.v.assign(3 * n, 0);
-    p.f.assign(3 * n, 0);
-    for (std::size_t i = 0; i < n; ++i)
-        for (std::size_t x = 0; x < 3; ++x) {
-            const double v = d.normal() / std::sqrt(p.mass[i] > 0 ? p.mass[i] : 1), f = d.normal();
-            if (!at_rest && p.mass[i] >= 0) p.v[3 * i + x] = v;
-            if (!(m.features & BODY_ONE_PULLED) || i == special) p.f[3 * i + x] = f;
-        }
-    if (m.features & BODY_CONSISTENT) {
-        const reference::rigid_solution s = reference::solve_rigid(p, {}, {}, 0);
-        if (s.regular)
-            for (std::size_t i = 0; i < p.v.size(); ++i) p.v[i] = static_cast<double>(s.velocities.moved[i]);
-    }
-    const double rate = fastest(p), drift = d.decades(-9, -1.5);
-    m.dt = rate > 0 ? drift / rate : 0;
-    if (!std::isfinite(m.dt)) m.dt = 0;
-}
-
-bool set_lengths(hostile_body &m)
-{
-    m.p.length.clear();
-    const double extent = largest(m.p.r);
-    for (const auto &pair : m.p.pairs) {
-        m.p.length.push_back(distance(m.p, pair[0], pair[1]));
-        if (!(m.p.length.back() > 1e-10 * extent)) return false;  // all but rounding
-    }
-    return true;
-}
-
 void roughen(hostile_body &m, molecule_dice &d)
 {
     if (!(m.features & BODY_CRUDE)) return;
@@ -420,16 +387,55 @@ bool is_clear(hostile_body &m)
         const reference::body_facts facts = reference::facts_of_body(m.p, b);
         if (facts.doubtful || facts.rank == 0) return false;
         m.refused = m.refused || facts.refused;
+        for (const auto &pair : m.p.pairs)
+            for (const std::size_t end : pair)
+                m.refused = m.refused ||
+                            std::find(facts.off_plane.begin(), facts.off_plane.end(), end) != facts.off_plane.end();
     }
     return true;
 }
 
 }  // namespace
 
+void draw_motion(hostile_body &m, molecule_dice &d)
+{
+    rigid_problem &p = m.p;
+    const std::size_t n = p.n_atoms();
+    const std::size_t special = static_cast<std::size_t>(d.whole(0, static_cast<std::int64_t>(n) - 1));
+    const bool at_rest = d.chance(0.15);
+    p.v.assign(3 * n, 0);
+    p.f.assign(3 * n, 0);
+    for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t x = 0; x < 3; ++x) {
+            const double v = d.normal() / std::sqrt(p.mass[i] > 0 ? p.mass[i] : 1), f = d.normal();
+            if (!at_rest && p.mass[i] >= 0) p.v[3 * i + x] = v;
+            if (!(m.features & BODY_ONE_PULLED) || i == special) p.f[3 * i + x] = f;
+        }
+    if (m.features & BODY_CONSISTENT) {
+        const reference::rigid_solution s = reference::solve_rigid(p, {}, {}, 0);
+        if (s.regular)
+            for (std::size_t i = 0; i < p.v.size(); ++i) p.v[i] = static_cast<double>(s.velocities.moved[i]);
+    }
+    const double rate = p.pairs.empty() && p.bodies.empty() ? 1 : fastest(p), drift = d.decades(-9, -1.5);
+    m.dt = rate > 0 ? drift / rate : 0;
+    if (!std::isfinite(m.dt)) m.dt = 0;
+}
+
+bool set_lengths(hostile_body &m)
+{
+    m.p.length.clear();
+    const double extent = largest(m.p.r);
+    for (const auto &pair : m.p.pairs) {
+        m.p.length.push_back(distance(m.p, pair[0], pair[1]));
+        if (!(m.p.length.back() > 1e-10 * extent)) return false;  // all but rounding
+    }
+    return true;
+}
+
 const char *body_class_name(int c)
 {
-    static const char *const names[N_BODY_CLASSES] = {"lone bodies", "joined bodies", "loops of bodies",
-                                                      "crowded bodies"};
+    static const char *const names[LISTED + 1] = {"lone bodies",    "joined bodies", "loops of bodies",
+                                                  "crowded bodies", "relations",     "dependent lists"};
     return names[c];
 }
 
@@ -494,7 +500,7 @@ hostile_body make_twin(const hostile_body &of, std::uint64_t seed)
         t.apply(from, to);
         for (std::size_t x = 0; x < 3; ++x) m.p.r[3 * i + x] = static_cast<double>(to[x]);
     }
-    draw_motion(m, d);
+    if (m.shape != LISTED) draw_motion(m, d);
     return m;
 }
 

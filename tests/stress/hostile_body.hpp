@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "molecule_dice.hpp"
 #include "rigid_solution.hpp"
 
 namespace stress
@@ -19,7 +20,9 @@ enum body_class {
     JOINED,   ///< bodies and atoms joined by bonds, without cycles
     LOOPS,    ///< the same with cycles
     CROWDED,  ///< a body with up to a hundred bonds
-    N_BODY_CLASSES
+    N_BODY_CLASSES,
+    RELATED = N_BODY_CLASSES,  ///< linear relations among atoms, and bonds
+    LISTED                     ///< lists of distances that depend on each other, with the decimals of a file
 };
 const char *body_class_name(int c);
 
@@ -44,8 +47,11 @@ struct hostile_body {
     unsigned features = 0;
     std::uint64_t seed = 0;
     reference::rigid_problem p;
-    double dt = 0;         ///< a step in which nothing turns far
-    bool refused = false;  ///< a body of it can't be carried by its masses: hol_chains_add_rigid has to say so
+    double dt = 0;               ///< a step in which nothing turns far
+    bool refused = false;        ///< a body of it can't be carried by its masses: hol_chains_add_rigid has to say so
+    std::vector<double> listed;  ///< lengths as the library is given them; p has those of the positions
+    std::int64_t freedoms = -1;  ///< that it has to have, if it is listed
+    std::vector<std::pair<std::vector<std::size_t>, int>> groups;  ///< of a list: atoms on a line, in a plane, in space
 
     std::int64_t n_bonds() const
     {
@@ -56,8 +62,19 @@ struct hostile_body {
     std::string words() const;
 };
 
-/** The molecule with this number; the same on every machine. Every fourth number is of each class. */
+/** The molecule with this number; the same on every machine. Every fourth number is of each of the first classes. */
 hostile_body make_hostile_body(std::uint64_t seed);
+
+/** Of one of the two others (hostile_relations.cpp). */
+hostile_body make_related(std::uint64_t seed);
+hostile_body make_listed(std::uint64_t seed);
+/** Puts a list's atoms where the library's lengths are, and says what holds them there; by the set of kernels that is
+ * in use. Nothing else of it is to be asked for before. */
+void complete_listed(hostile_body &m);
+
+/** What both have in common: forces, velocities and a step; whether no bond is all but rounding. */
+void draw_motion(hostile_body &m, molecule_dice &d);
+bool set_lengths(hostile_body &m);
 
 /** The same bodies and bonds, turned in space and in another motion, so that they share a block. */
 hostile_body make_twin(const hostile_body &of, std::uint64_t seed);

@@ -68,11 +68,11 @@ bool molecule_tally::within(long double excess, double share) const
 namespace
 {
 
-void write_markdown(const char *(*class_name)(int), const std::vector<std::string> &sets,
+void write_markdown(const char *(*class_name)(int), std::size_t n_classes, const std::vector<std::string> &sets,
                     const std::vector<molecule_tally> &of_set)
 {
     const markdown_table table(sets);
-    for (std::size_t c = 0; c < N_CLASSES && table.out; ++c) {
+    for (std::size_t c = 0; c < n_classes && table.out; ++c) {
         table.row(class_name(static_cast<int>(c)),
                   [&](std::size_t s) { return std::to_string(of_set[s].classes[c].molecules); });
         table.row("above a bound", [&](std::size_t s) { return std::to_string(of_set[s].classes[c].exceeded); });
@@ -88,10 +88,10 @@ void write_markdown(const char *(*class_name)(int), const std::vector<std::strin
 
 }  // namespace
 
-void print(const char *(*class_name)(int), const std::vector<std::string> &sets,
+void print(const char *(*class_name)(int), std::size_t n_classes, const std::vector<std::string> &sets,
            const std::vector<molecule_tally> &of_set)
 {
-    for (std::size_t c = 0; c < N_CLASSES; ++c) {
+    for (std::size_t c = 0; c < n_classes; ++c) {
         std::printf("\n%s\n%-15s %10s", class_name(static_cast<int>(c)), "worst err/bound", "checked");
         for (const std::string &set : sets) std::printf(" %9s", set.c_str());
         std::printf(" %9s %8s\n", "exceeded", "molecule");
@@ -112,10 +112,10 @@ void print(const char *(*class_name)(int), const std::vector<std::string> &sets,
                         is_information(static_cast<int>(q)) ? "  (for information)" : "");
         }
     }
-    write_markdown(class_name, sets, of_set);
+    write_markdown(class_name, n_classes, sets, of_set);
     std::printf("\n");
     for (std::size_t s = 0; s < sets.size(); ++s)
-        for (std::size_t c = 0; c < N_CLASSES; ++c) {
+        for (std::size_t c = 0; c < n_classes; ++c) {
             const molecule_tally::of_class &here = of_set[s].classes[c];
             std::printf(
                 "stress: %lld %s with %s, %lld bonds, condition numbers up to %.1Le, %lld singular, %lld "

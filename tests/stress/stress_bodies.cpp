@@ -47,13 +47,31 @@ struct group_of_bodies {
         const std::uint64_t size = static_cast<std::uint64_t>(random_integer(&stream, 1, group_size));
         const bool twins = random_uniform(&stream) < 0.5;
         const hostile_body one =
-            make_hostile_body(first + static_cast<std::uint64_t>(random_integer(&stream, 0, N_BODY_CLASSES - 1)));
+            make_one(first + static_cast<std::uint64_t>(random_integer(&stream, 0, N_BODY_CLASSES - 1)));
         for (std::uint64_t k = 0; k < size; ++k)
-            molecules.push_back(twins ? make_twin(one, first + k) : make_hostile_body(first + k));
+            molecules.push_back(twins ? make_twin(one, first + k) : make_one(first + k));
+    }
+    /** A quarter of the groups are of relations, another one of lists that depend. */
+    hostile_body make_one(std::uint64_t seed) const
+    {
+        const std::uint64_t kind = first / group_size % 4;
+        return kind == 1 ? make_related(seed) : kind == 3 ? make_listed(seed) : make_hostile_body(seed);
     }
     void solve()
     {
-        for (const hostile_body &m : molecules) exact.push_back(solution_of(m));
+        for (const hostile_body &m : molecules)
+            exact.push_back(m.shape == LISTED ? reference::rigid_solution() : solution_of(m));
+    }
+    /** With the kernels that are in use: lists, whose positions are the library's. */
+    group_of_bodies completed() const
+    {
+        group_of_bodies g = *this;
+        for (std::size_t k = 0; k < g.molecules.size(); ++k) {
+            if (g.molecules[k].shape != LISTED) continue;
+            complete_listed(g.molecules[k]);
+            g.exact[k] = solution_of(g.molecules[k]);
+        }
+        return g;
     }
     static reference::rigid_solution solution_of(const hostile_body &m)
     {
@@ -67,8 +85,9 @@ struct group_of_bodies {
     }
 };
 
-void check(const group_of_bodies &g, molecule_tally &sum)
+void check(const group_of_bodies &given, molecule_tally &sum)
 {
+    const group_of_bodies g = given.completed();
     std::vector<molecule_verdict> verdicts(g.molecules.size());
     check_invariances(g.molecules, g.first + 1, verdicts);
     for (std::size_t k = 0; k < g.molecules.size(); ++k) {
@@ -90,11 +109,13 @@ int check_seed(std::uint64_t seed)
     group_of_bodies g(first);
     const bool in_group = seed - first < g.molecules.size();
     if (!in_group) {
-        g.molecules.push_back(make_hostile_body(seed));
+        g.molecules.push_back(g.make_one(seed));
     } else {
         const auto its = g.molecules.begin() + static_cast<std::ptrdiff_t>(seed - first);
         std::rotate(its, its + 1, g.molecules.end());
     }
+    g.exact.resize(g.molecules.size());
+    g = g.completed();
     std::vector<molecule_verdict> verdicts(g.molecules.size());
     check_invariances(g.molecules, first + 1, verdicts);
     const hostile_body &m = g.molecules.back();
@@ -134,7 +155,7 @@ int run(const soak_options &options, double percent)
     work.repeat = "tests/stress/stress_bodies --group";
     const int lost = soak(options, sets, work);
     const std::vector<molecule_tally> of_set = tallies.of_all_sets();
-    print(body_class_name, sets, of_set);
+    print(body_class_name, LISTED + 1, sets, of_set);
     if (lost > 0) std::printf("stress: %d processes ended before their time\n", lost);
     bool within = lost == 0;
     for (const molecule_tally &t : of_set)

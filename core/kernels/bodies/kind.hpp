@@ -18,6 +18,7 @@ struct BodyKind {
     double per_moment[4];  // 1/M, 1/(M L_p^2)
     double scale;          // by which shares are too large, inverse
     double excess[4][4];   // 1 less the inverse of P_kl = sum of share_k place_l, as they are rounded
+    const double *height;  // [n_atoms] of sites off a plane along its normal a_1 x a_2; null: there are none
     const double *masses;  // [n_atoms], 0: a massless site
     const double *place;   // [n_atoms][1 + rank]: 1, x_p
     const double *share;   // [n_atoms][1 + rank]: m/M, m x_p / (M L_p^2), but for what is in excess

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/kernels/bodies/atoms.hpp"
+#include "core/kernels/bodies/off_plane.hpp"
 
 namespace holonomic::HOL_ISA {
 
@@ -151,7 +152,12 @@ struct BodyLanes : BodyBlock {
         else
             write_some(call.g, y, lanes);
     }
-    HOL_FORCED void write_velocities(const AtomArray &array, const Frame<R> &rate, unsigned lanes) {
+    HOL_FORCED void write_velocities(const AtomArray &array, const Frame<R> &axes, const Frame<R> &rate,
+                                     unsigned lanes) {
+        write_rates(array, rate, lanes);
+        if (has_off_plane<R>(kind)) write_site_velocities(array, axes, rate, nullptr, lanes);
+    }
+    HOL_FORCED void write_rates(const AtomArray &array, const Frame<R> &rate, unsigned lanes) {
         if (takes_rows(array, lanes)) return write_at(kind, rate, rows(array));
         for (long a = 0; a < kind.n_atoms; ++a) put(x[a], rate.at(kind.place + a * (1 + R)));
         write_some(array, x, lanes);
@@ -164,6 +170,13 @@ struct BodyLanes : BodyBlock {
         sum_all<R, of_rates>(static_cast<const vec3 *>(x), kind, kind.share, kind.n_atoms, to);
         return less(largest, splat(4 * kind.extent * kind.extent));
     }
+    // Takes the normal of these axes, times heights, from what changes() has left in x.
+    void take_heights(const Frame<R> &axes) {
+        if constexpr (R == 2) {
+            const vec3 normal = normal_of(axes);
+            for (long a = 0; a < kind.n_atoms; ++a) put(x[a], less_times(x[a], splat(kind.height[a]), normal));
+        }
+    }
     // Moves atoms to where their changes are those of a frame, and velocities by these moves over dt.
     HOL_FORCED void write_moves(const PositionsCall &call, const Frame<R> &change, unsigned lanes) {
         const double per_dt = 1 / call.dt;
@@ -173,10 +186,17 @@ struct BodyLanes : BodyBlock {
         add_some(call.r, 1, x, lanes);
         if (call.v.x) add_some(call.v, per_dt, x, lanes);
     }
-    void write_site_velocities(const AtomArray &array, const Frame<R> &rate, unsigned lanes) const {
+    // axes: those that belong to the rate; flow: what flows with the box, or null.
+    __attribute__((noinline)) void write_site_velocities(const AtomArray &array, const Frame<R> &axes,
+                                                         const Frame<R> &rate, const double *flow,
+                                                         unsigned lanes) const {
+        vec3 turn = {};
+        if constexpr (R == 2)
+            if (kind.height) turn = normal_rate(axes, rate, flow);
         for (long a = 0; a < kind.n_atoms; ++a) {
             if (kind.masses[a] != 0) continue;
             vec3 u = rate.at(kind.place + a * (1 + R));
+            if (kind.height) u = add_times(u, splat(kind.height[a]), turn);
             if (takes_rows(array, lanes)) {
                 double *r[W], *to[W];
                 rows_at(rows(array), 0, r);

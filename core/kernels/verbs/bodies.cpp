@@ -47,13 +47,18 @@ struct ForcesOf : BodyLanes<R> {
     HOL_FORCED void read() {
         this->positions(call.r, call.box, at);
         this->forces(call.f, z);
+        if constexpr (R == 2)
+            if (has_off_plane<R>(kind)) carry_to_axes(kind, at, this->y, z);
         if (!call.v.x) return of_rates.clear();
         Frame<R> rate;
         this->template rates<of_rough_axes>(call.v, rate);
         twice_products(rate, of_rates);
     }
     HOL_FORCED mask solve(BodyResult *results) {
-        return project_with_virial(kind, at, of_rates, z, call.virial, this->count, results);
+        const mask good = project_with_virial(kind, at, of_rates, z, call.virial, this->count, results);
+        if constexpr (R == 2)
+            if (has_off_plane<R>(kind) && call.virial) add_virial_of_sites(kind, at, this->y, this->count, results);
+        return good;
     }
     HOL_FORCED void write(unsigned lanes) {
         if (call.g.x) this->write_forces(call, z, lanes);
@@ -77,7 +82,7 @@ struct VelocitiesOf : BodyLanes<R> {
         none.clear();
         return project_with_virial(kind, at, none, rate, call.virial, this->count, results);
     }
-    HOL_FORCED void write(unsigned lanes) { this->write_velocities(call.v, rate, lanes); }
+    HOL_FORCED void write(unsigned lanes) { this->write_velocities(call.v, at, rate, lanes); }
 };
 
 // The trial less the reference, t, has a frame of its own; what is off the frame goes, and the rest is brought back. So
@@ -128,17 +133,20 @@ struct PositionsOf : BodyLanes<R> {
         return good;
     }
     HOL_FORCED void write(unsigned lanes) {
+        if (has_off_plane<R>(kind)) this->take_heights(end_of_axes());
         this->write_moves(call, change, lanes);
         if (has_sites_to_write()) write_sites(lanes);
     }
 
 private:
+    Frame<R> end_of_axes() const {
+        Frame<R> end = change;
+        for (int k = 1; k <= R; ++k) put(end[k], from[k] + change[k]);
+        return end;
+    }
     __attribute__((noinline)) void report(BodyResult *results) {
-        Frame<R> moved, end;
-        for (int k = 1; k <= R; ++k) {
-            put(moved[k], change[k] - trial[k]);
-            put(end[k], from[k] + change[k]);
-        }
+        Frame<R> moved, end = end_of_axes();
+        for (int k = 1; k <= R; ++k) put(moved[k], change[k] - trial[k]);
         if (call.virial) write_virial(kind, from, moved, 1 / (call.dt * call.dt), this->count, results);
         const vec error = largest_of(errors_of(end));
         for (int l = 0; l < this->count; ++l) {
@@ -152,7 +160,7 @@ private:
         const vec per_dt = splat(1 / call.dt);
         HOL_UNROLL_FEW
         for (int k = 0; k <= R; ++k) put(rate[k], add_times(rate[k], per_dt, change[k] - trial[k]));
-        this->write_site_velocities(call.v, rate, lanes);
+        this->write_site_velocities(call.v, end_of_axes(), rate, call.flow, lanes);
     }
 };
 
