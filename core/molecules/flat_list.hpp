@@ -19,10 +19,6 @@ struct FlatArrays {
     FlatList list;
 };
 
-// Whether a molecule is worked on along a list: a graph or a large tree, of which the list is not much longer than it.
-// An atom of n bonds brings n^3 / 6 updates.
-bool takes_flat_list(const Schedule &s);
-
 // Of a molecule whose bonds have been numbered: trees first, then the core in its order. Throws std::length_error where
 // the factor fills up to 2^31 entries.
 void make_flat_list(const Schedule &s, FlatArrays &arrays);

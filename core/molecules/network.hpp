@@ -28,11 +28,6 @@ struct NetworkArrays {
     NetworkPlan plan{};
 };
 
-// A large molecule of so many strands of long_strand bonds in the mean is worked on as a network: its unknowns are few,
-// and soon found. So is one whose elimination would take more than most_bytes for each bond of its core.
-constexpr std::int32_t many_strands = 64, long_strand = 4;
-constexpr std::int64_t most_bytes_of_list = 2000;
-
 // Of a molecule whose trees have been numbered, with all bonds between atoms of the core behind them.
 // Its unknowns can be eliminated directly if that takes no more than most_bytes.
 void make_network(const Schedule &s, std::int64_t most_bytes, NetworkArrays &arrays);

@@ -7,7 +7,7 @@
 
 #include "core/kernels/molecules/schedule.hpp"
 #include "core/molecules/chains.hpp"
-#include "core/molecules/schedule_runs.hpp"
+#include "core/molecules/way.hpp"
 #include "core/run/kernel_choice.hpp"
 
 namespace holonomic {
@@ -22,7 +22,6 @@ static_assert(widest <= most_lanes, "");
 constexpr std::size_t loose_window = 4096;  // molecules
 // Different trees are sorted within so many bonds, so that those that are worked on together are close in memory.
 constexpr std::int64_t forest_window = 16384;
-constexpr std::int32_t most_in_star = 4;  // a tree of no more may be one, which has kernels of its own
 
 std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
@@ -66,14 +65,13 @@ private:
     // share what is large.
     bool works_alone(std::int32_t shape, std::int64_t n_bonds) const {
         if (shape == linear) return n_bonds > longest_lane;
-        const Schedule &s = *plan_->schedules[at(shape)];
-        return !is_in_lanes(s) || s.network;
+        return plan_->schedules[at(shape)]->alone;
     }
 
     // What solves a network finds bonds by a list, but for the careful solver.
     bool lists_bonds(std::int32_t shape) const {
         const Schedule *const s = shape == linear ? nullptr : plan_->schedules[at(shape)];
-        return s && s->network && !s->careful;
+        return s && s->way.forces == Way::network && !s->careful;
     }
 
     // Whether a molecule has fixed atoms that stand elsewhere, too.
@@ -253,7 +251,7 @@ private:
                 works_alone(one.shape, one.n_bonds))
                 continue;
             const Schedule &s = *plan_->schedules[at(one.shape)];
-            if (s.type != Schedule::tree || s.n_bonds <= most_in_star) continue;
+            if (!mixes(s)) continue;
             one.profile = TreeProfile(s);
             one.window = static_cast<std::int32_t>(1 + bonds / forest_window);
             bonds += one.n_bonds;
@@ -276,7 +274,7 @@ private:
     // A large tree whose atoms fill the lanes is a forest by itself, the same for all molecules of a shape.
     void plant_alone(Plan::Piece &piece) {
         const Schedule &s = *plan_->schedules[at(piece.shape)];
-        if (s.n_pieces == 0) return;
+        if (s.way.forces != Way::one_tree) return;
         const auto found = alone_.emplace(piece.shape, plan_->forests.size());
         if (found.second) plan_->forests.add_large(kernels().lanes, &s);
         piece.first_forest = found.first->second;

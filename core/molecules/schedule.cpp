@@ -6,6 +6,7 @@
 
 #include "core/kernels/careful/scratch.hpp"
 #include "core/molecules/schedule_maker.hpp"
+#include "core/molecules/way.hpp"
 
 namespace holonomic {
 
@@ -17,7 +18,7 @@ void add_large_tree(Schedule &s, Schedule::Memory::Large &m) {
     s.n_arms = static_cast<std::int32_t>(m.arms.arm.size());
     if (s.n_arms == 0) {
         m.runs = runs_of(s);
-        if (!fill_lanes(m.runs, s.n_bonds)) {
+        if (!fills_lanes(s, places_in_lanes(m.runs))) {
             m.runs = {};
             return;
         }
@@ -63,12 +64,7 @@ std::unique_ptr<Schedule> bare_schedule(std::int32_t n_atoms, std::int32_t n_bon
     return s;
 }
 
-// Positions of larger trees go along a list in any case: it streams from memory what a forest fetches.
-constexpr std::int32_t largest_positions_in_forest = 65536;
-
-// Small networks have it for what does not converge, if it fills no more bytes a bond of the core.
-constexpr std::int32_t largest_with_careful = 8192;
-constexpr std::int64_t most_bytes_of_careful = 4000;
+// For what does not converge.
 void make_careful_too(Schedule &s, std::int64_t most_bytes) {
     try {
         s.memory->careful = make_careful_schedule(s, most_bytes);
@@ -87,18 +83,16 @@ std::unique_ptr<const Schedule> make_schedule(std::int32_t n_atoms, std::int32_t
         bare_schedule(n_atoms, n_bonds, pairs, fixed, most_bytes, ScheduleMaker::molecule, work ? *work : own);
     Schedule::Memory &m = *s->memory;
     if (s->network) {
-        if (n_bonds <= largest_with_careful)
-            make_careful_too(*s, std::min(most_bytes, most_bytes_of_careful * static_cast<std::int64_t>(s->n_core)));
-        return s;
+        if (const std::int64_t most = most_bytes_of_careful(*s)) make_careful_too(*s, std::min(most_bytes, most));
+    } else {
+        if (is_large_tree(*s)) add_large_tree(*s, m.of_large());
+        if (takes_list(*s)) {
+            make_flat_list(*s, m.of_large().flat);
+            s->flat = &m.large->flat.list;
+        }
+        if (may_have_paths(*s) && make_path_plan(*s, m.of_large().paths)) s->paths = &m.large->paths.plan;
     }
-    if (n_bonds > largest_in_lanes && s->type == Schedule::tree) add_large_tree(*s, m.of_large());
-    const bool in_lanes = s->n_pieces > 0 && n_bonds <= largest_positions_in_forest;
-    if (!in_lanes && takes_flat_list(*s)) {
-        make_flat_list(*s, m.of_large().flat);
-        s->flat = &m.large->flat.list;
-    }
-    if (!in_lanes && n_bonds > largest_in_lanes && make_path_plan(*s, m.of_large().paths))
-        s->paths = &m.large->paths.plan;
+    choose_ways(*s);
     return s;
 }
 

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "core/molecules/lists.hpp"
+#include "core/molecules/way.hpp"
 
 namespace holonomic {
 
@@ -15,7 +16,7 @@ public:
 
     ScheduleArms make() {
         find_arms();
-        if (2 * bonds_in_arms() < s_.n_bonds) return {};
+        if (!is_mostly_arms(s_, bonds_in_arms())) return {};
         list_stretches();
         sort();
         divide();

@@ -14,8 +14,8 @@ struct ScheduleArms {
     std::vector<std::int32_t> share_start;
 };
 
-// From the parents, the children and the numbers of a schedule; none, if they have less than half of the bonds. Takes
-// O(n).
+// From the parents, the children and the numbers of a schedule; none, if they have little of
+// it. Takes O(n).
 ScheduleArms arms_of(const Schedule &s);
 
 }  // namespace holonomic

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/molecules/flat_list.hpp"
+#include "core/molecules/way.hpp"
 
 namespace holonomic {
 
@@ -14,7 +14,7 @@ void ScheduleMaker::make() {
     number_trees();
     if (s_.n_core == 0) {
         s_.type = Schedule::tree;
-    } else if (for_ != network && s_.n_core == s_.n_core_atoms && (s_.n_tree == 0 || is_simple_ring())) {
+    } else if (for_ != network && is_ring(s_, most_trees_at_core())) {
         s_.type = s_.n_bonds == 3 ? Schedule::triangle : Schedule::ring;
         number_ring();
     } else {
@@ -105,12 +105,12 @@ void ScheduleMaker::number_trees() {
         if (upper_bond_[at(i)] < 0) m_.atom_of.push_back(i);
 }
 
-// Small, and with few trees at each of its atoms.
-bool ScheduleMaker::is_simple_ring() const {
-    if (s_.n_bonds > largest_graph_in_lanes) return false;
+// At an atom of a ring.
+std::int32_t ScheduleMaker::most_trees_at_core() const {
+    std::int32_t most = 0;
     for (std::int32_t i = 0; i < s_.n_atoms; ++i)
-        if (upper_bond_[at(i)] < 0 && bonds_.size(i) > 2 + most_on_ring) return false;
-    return true;
+        if (upper_bond_[at(i)] < 0) most = std::max(most, bonds_.size(i) - 2);
+    return most;
 }
 
 // Round from the core's first atom in the direction of its first bond.
@@ -136,13 +136,12 @@ void ScheduleMaker::number_core() {
         core_number[at(k)] = static_cast<std::int32_t>(core.size());
         core.push_back(k);
     }
-    const bool listed = takes_flat_list(s_);
+    const bool listed = has_short_list(s_);
     if (for_ == knot || for_ == careful || (listed && s_.n_bonds <= largest_graph_in_lanes))
         return order_core(core, core_number, most_bytes_);
-    is_network_ = for_ == network || !listed || has_long_strands(core);
+    is_network_ = for_ == network || !listed || is_mostly_strands(s_, ends_of_strands(core));
     try {
-        const std::int64_t most = most_bytes_of_list * static_cast<std::int64_t>(core.size());
-        if (!is_network_) return order_core(core, core_number, std::min(most_bytes_, most));
+        if (!is_network_) return order_core(core, core_number, std::min(most_bytes_, most_bytes_of_list(s_)));
     } catch (const TooMuchMemory &) {
         is_network_ = true;
     }
@@ -160,15 +159,15 @@ void ScheduleMaker::order_core(const Numbers &core, const Numbers &core_number, 
         m_.bond_of.push_back(core[at(p)]);
 }
 
-// Between atoms with other than two bonds of the core, or with trees.
-bool ScheduleMaker::has_long_strands(const Numbers &core) const {
+// At atoms with other than two bonds of the core, or with trees.
+std::int64_t ScheduleMaker::ends_of_strands(const Numbers &core) const {
     Numbers degree(at(s_.n_atoms));
     for (const std::int32_t k : core)
         for (const std::int32_t i : {m_.atom_i[at(k)], m_.atom_j[at(k)]}) ++degree[at(i)];
     std::int64_t ends = 0;
     for (std::int32_t i = 0; i < s_.n_atoms; ++i)
         if (degree[at(i)] > 2 || bonds_.size(i) > 2) ends += degree[at(i)];
-    return ends >= 2 * many_strands && 2 * static_cast<std::int64_t>(core.size()) >= long_strand * ends;
+    return ends;
 }
 
 // Bonds at one atom are all neighbours of each other: n of them fill at least what n columns do.

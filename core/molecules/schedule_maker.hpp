@@ -29,11 +29,11 @@ private:
     void strip();
     void hang_from_leaf(std::int32_t centre);
     void number_trees();
-    bool is_simple_ring() const;
+    std::int32_t most_trees_at_core() const;
     void number_ring();
     void number_core();
     void order_core(const Numbers &core, const Numbers &core_number, std::int64_t most_bytes);
-    bool has_long_strands(const Numbers &core) const;
+    std::int64_t ends_of_strands(const Numbers &core) const;
     void check_atoms(const Numbers &core, std::int64_t most_bytes) const;
     void invert_numbers();
     void list_children();

@@ -84,11 +84,11 @@ private:
 ScheduleRuns runs_of(const Schedule &s) { return RunMaker(s).make(); }
 
 // Counted for lanes that are as many as most have, whatever those of the kernels are.
-bool fill_lanes(const ScheduleRuns &runs, std::int32_t n_bonds) {
+std::int64_t places_in_lanes(const ScheduleRuns &runs) {
     constexpr std::int64_t lanes = 8;
     std::int64_t places = 0;
     for (const Schedule::Run &run : runs.run) places += (run.count + lanes - 1) / lanes * lanes * run.children;
-    return places <= 3 * std::int64_t{n_bonds};
+    return places;
 }
 
 }  // namespace holonomic

@@ -17,8 +17,7 @@ struct ScheduleRuns {
 // From the parents and the children of a schedule. Takes O(n).
 ScheduleRuns runs_of(const Schedule &s);
 
-// Whether the atoms of a large tree of so many bonds fill lanes: not where most stand one behind the other. Then it is
-// a forest by itself (forests.hpp).
-bool fill_lanes(const ScheduleRuns &runs, std::int32_t n_bonds);
+// In how many places of lanes the atoms of a large tree stand, empty ones included.
+std::int64_t places_in_lanes(const ScheduleRuns &runs);
 
 }  // namespace holonomic

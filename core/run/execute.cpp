@@ -8,7 +8,7 @@
 #include "core/caller/environment.hpp"
 #include "core/error.hpp"
 #include "core/kernels/molecules/forest/forest.hpp"
-#include "core/kernels/molecules/list/flat_list.hpp"
+#include "core/molecules/way.hpp"
 #include "core/run/lane.hpp"
 #include "core/run/outcomes.hpp"
 #include "core/run/thread_memory.hpp"
@@ -75,9 +75,7 @@ bool is_shared_molecule(const Plan &plan, std::int64_t p, int n_threads, bool pa
     const Schedule &s = *plan.schedules[static_cast<std::size_t>(piece.shape)];
     const std::int64_t n = s.n_pieces, n_molecules = static_cast<std::int64_t>(plan.pieces.size());
     const bool large = n_molecules < n_threads || static_cast<std::int64_t>(s.n_bonds) * n_threads > plan.n_bonds;
-    if (large && s.network) return true;
-    if (large && ((paths && s.paths) || (s.flat && s.flat->n_branches > 0))) return true;
-    if (large && s.n_arms > 0 && s.n_shares > 1) return true;
+    if (large && has_shares(s, paths)) return true;
     return n > 1 && (n >= 8 * n_threads || n_molecules < 4 * n_threads);
 }
 #endif

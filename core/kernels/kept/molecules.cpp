@@ -11,8 +11,7 @@ namespace holonomic::HOL_ISA {
 using namespace graph;
 
 bool is_kept(const Schedule &s) {
-    if (s.type == Schedule::triangle) return true;
-    return !s.network && !s.flat && s.n_arms == 0 && s.n_pieces == 0 && is_in_lanes(s);
+    return s.way.given == Way::triangle || (!s.alone && (s.way.given == Way::tree || s.way.given == Way::ring));
 }
 
 static void leave(const MoleculeLane *lane, unsigned which, unsigned char *left) {

@@ -55,7 +55,7 @@ static inline void for_each_block(const MoleculeUnit &unit, double *scratch, Nex
     KnownMasses<vec> known;
     KnownMasses<double> known_one;
     bool full = false;  // the block before was, and lanes follow each other
-    const bool small = is_in_lanes(*unit.schedule);
+    const bool small = !unit.schedule->alone;
     int64_t first = 0;
     while (first < unit.count) {
         const int64_t left = unit.count - first;
@@ -85,6 +85,7 @@ template <class Call>
 struct LinearWork {
     const Call &call;
     const Schedule &schedule;
+    const Way way;
     const bool packed;
     Tally &tally;
     const LongTeam *team;
@@ -92,18 +93,24 @@ struct LinearWork {
 
     template <class V>
     void block(const MoleculeLane *lane, int used, bool masses_known, double *scratch) const {
-        if (schedule.n_arms > 0 && solve_armed(call, schedule, *lane, packed, team, scratch, tally)) return;
-        Memory<V> memory = {scratch};
-        if (schedule.flat) {
-            const bool known = masses_known && schedule.n_arms == 0;
-            const FlatBlock<V> block = {schedule, lane, used, packed, known, team, memory};
-            if (const unsigned rest = solve_flat(call, block, tally))
-                solve_doubtful(call, schedule, lane, rest, memory.next, tally);
-            return;
+        if (way == Way::list) return block_along_list<V>(lane, used, masses_known, scratch);
+        if (way == Way::armed_tree) {
+            if (solve_armed(call, schedule, *lane, packed, team, scratch, tally)) return;
+            if (schedule.flat) return block_along_list<V>(lane, used, false, scratch);
         }
+        Memory<V> memory = {scratch};
         Linear<V> z(schedule, lane, used, packed, call.box, call.r, memory);
         const unsigned rest = solve_block(call, z, masses_known, ahead, tally);
         if (__builtin_expect(rest != 0, 0)) solve_doubtful(call, schedule, z.x.lane, rest, memory.next, tally);
+    }
+
+private:
+    template <class V>
+    __attribute__((noinline)) void block_along_list(const MoleculeLane *lane, int used, bool masses_known, double *scratch) const {
+        Memory<V> memory = {scratch};
+        const FlatBlock<V> block = {schedule, lane, used, packed, masses_known, team, memory};
+        if (const unsigned rest = solve_flat(call, block, tally))
+            solve_doubtful(call, schedule, lane, rest, memory.next, tally);
     }
 };
 

@@ -185,16 +185,18 @@ struct PositionsWork {
 
     template <class V>
     void block(const MoleculeLane *lane, int used, bool known, double *scratch) const {
-        if (schedule.flat) {
-            Memory<V> memory = {scratch};
-            FlatPositions<V> list(call, schedule, lane, used, packed, known, team, memory, tally);
-            if (const unsigned rest = list.solve()) solve_doubtful(call, schedule, lane, rest, memory.next, tally);
-            return;
+        switch (schedule.way.positions) {
+        case Way::list: return along_list<V>(lane, used, known, scratch);
+        case Way::ring: return solve<RingNewton<V>>(lane, used, known, scratch);
+        default: return solve<Newton<V>>(lane, used, known, scratch);
         }
-        if (schedule.type == Schedule::ring && schedule.n_tree == 0)
-            solve<RingNewton<V>>(lane, used, known, scratch);
-        else
-            solve<Newton<V>>(lane, used, known, scratch);
+    }
+
+    template <class V>
+    void along_list(const MoleculeLane *lane, int used, bool known, double *scratch) const {
+        Memory<V> memory = {scratch};
+        FlatPositions<V> list(call, schedule, lane, used, packed, known, team, memory, tally);
+        if (const unsigned rest = list.solve()) solve_doubtful(call, schedule, lane, rest, memory.next, tally);
     }
 
     template <class System>

@@ -4,24 +4,12 @@
 
 #include <stdint.h>
 
+#include "core/kernels/molecules/way.hpp"
+
 namespace holonomic {
 
-// Molecules of more bonds are worked on one by one, trees in pieces.
-constexpr int32_t largest_in_lanes = 2048;
-// Those with cycles gain nothing by lanes from fewer on: a list (flat_list.hpp) serves one of them as fast as lanes
-// serve each of four, and most are the only one of their kind.
-constexpr int32_t largest_graph_in_lanes = 256;
-// The most children of an atom of a ring with trees: chemical ones have no more. With others it is a graph.
-constexpr int32_t most_on_ring = 2;
-constexpr int32_t slots_of_piece = 2048;  // so many bonds at work fill a second-level cache
-
-// Bonds of an arm: what is done once an arm is little beside what is done for its bonds, and these stay in cache. All
-// but one are a multiple of arm_step, so that segments in as many lanes are equally long.
-constexpr int32_t arm_step = 8, shortest_arm = 5 * arm_step + 1, longest_arm = 128 * arm_step + 1;
-
-// An atom of a tree with more children is eliminated by a matrix of three rows (tree/many.hpp). How many values are
-// kept of k children: multipliers of their decomposition; or of that matrix, and with k products for positions.
-constexpr int32_t most_decomposed = 7;
+// How many values are kept of k children: multipliers of their decomposition; or of the matrix of three rows
+// (tree/many.hpp), and with k products for positions.
 static constexpr int32_t values_of_joint(int32_t k) { return k > most_decomposed ? 9 + 3 * k : k * (k - 1) / 2; }
 
 struct FlatList;     // core/kernels/molecules/list/flat_list.hpp
@@ -46,6 +34,8 @@ struct Schedule {
         graph,  // any other core
     };
     Type type;
+    Ways way;   // how it is solved; what follows is there where its ways need it
+    bool alone; // not beside others of its kind in lanes
     int32_t n_atoms, n_bonds;
     int32_t n_tree;        // bonds of trees
     int32_t n_core;        // bonds of the core
@@ -56,6 +46,7 @@ struct Schedule {
     // As they were given: bond k joins the local atoms atom_i[k] and atom_j[k].
     const int32_t *atom_i, *atom_j;
     const uint8_t *fixed;  // [n_atoms] by local atom
+    int32_t star_centre;   // the local atom at which all bonds of a star meet; or -1
 
     const int32_t *atom_of;   // [n_atoms] local atom of a slot
     const int32_t *slot_of;   // [n_atoms] and back
@@ -148,10 +139,6 @@ struct Schedule {
 };
 
 // No members: each set of kernels must have its own.
-// Whether such molecules are worked on beside each other.
-static inline bool is_in_lanes(const Schedule &s) {
-    return s.n_bonds <= (s.flat ? largest_graph_in_lanes : largest_in_lanes);
-}
 // The order of elimination for the careful solver; or nullptr.
 static inline const Schedule *careful_order(const Schedule &s) {
     return !s.network ? &s : s.careful ? s.careful : s.late_careful;

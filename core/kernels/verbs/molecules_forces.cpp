@@ -18,31 +18,32 @@ void molecules_forces(const ForcesCall &call, const MoleculeUnit &unit, double *
     if (unit.forests) return forests_forces(call, unit, scratch, tally);
     const bool packed =
         call.r.packed && (!call.v.x || call.v.packed) && (!call.f.x || call.f.packed) && (!call.g.x || call.g.packed);
-    if (unit.schedule->network) return solve_networks(call, unit, packed, scratch, tally);
-    if (unit.schedule->type == Schedule::triangle) {
+    const Way way = unit.schedule->way.forces;
+    if (way == Way::network) return solve_networks(call, unit, packed, scratch, tally);
+    if (way == Way::triangle) {
         const TriangleCall triangles = {call.r,      call.v,       call.f,   nullptr,     call.g,
                                         call.lambda, call.tension, call.add, call.virial, call.box};
-        solve_triangles(TriangleLinearVerb(triangles, &call, nullptr, tally), unit, packed, scratch);
-        return;
+        return solve_triangles(TriangleLinearVerb(triangles, &call, nullptr, tally), unit, packed, scratch);
     }
     NextMolecules ahead({&call.r, &call.v, &call.f, &call.g}, call.lambda);
-    const LinearWork<ForcesCall> work = {call, *unit.schedule, packed, tally, unit.team, ahead};
-    if (!do_stars<3>(StarForcesVerb{call, tally}, work, unit, scratch)) for_each_block(unit, scratch, ahead, work);
+    const LinearWork<ForcesCall> work = {call, *unit.schedule, way, packed, tally, unit.team, ahead};
+    if (way == Way::star && do_stars<3>(StarForcesVerb{call, tally}, work, unit, scratch)) return;
+    for_each_block(unit, scratch, ahead, work);
 }
 
 void molecules_solve(const SolveCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
     if (unit.forests) return forests_solve(call, unit, scratch, tally);
     const bool packed = call.r.packed && (!call.g.x || call.g.packed);
-    if (unit.schedule->network) return solve_networks(call, unit, packed, scratch, tally);
-    if (unit.schedule->type == Schedule::triangle) {
+    const Way way = unit.schedule->way.given;
+    if (way == Way::network) return solve_networks(call, unit, packed, scratch, tally);
+    if (way == Way::triangle) {
         const AtomArray none = {};
         const TriangleCall triangles = {call.r,      none,         none,     call.rhs,    call.g,
                                         call.lambda, call.tension, call.add, call.virial, call.box};
-        solve_triangles(TriangleLinearVerb(triangles, nullptr, &call, tally), unit, packed, scratch);
-        return;
+        return solve_triangles(TriangleLinearVerb(triangles, nullptr, &call, tally), unit, packed, scratch);
     }
     NextMolecules ahead({&call.r, &call.g}, call.lambda);
-    const LinearWork<SolveCall> work = {call, *unit.schedule, packed, tally, unit.team, ahead};
+    const LinearWork<SolveCall> work = {call, *unit.schedule, way, packed, tally, unit.team, ahead};
     for_each_block(unit, scratch, ahead, work);
 }
 

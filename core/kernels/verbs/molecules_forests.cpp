@@ -15,7 +15,7 @@ int64_t forest_scratch_bytes(const Forest &f) {
     int64_t careful = 0;
     for (int i = 0; i < f.n_trees; ++i)
         careful = f.schedule[i]->careful_bytes > careful ? f.schedule[i]->careful_bytes : careful;
-    const int64_t linear = ForestLinear::values(f), newton = f.schedule[0]->flat ? 0 : ForestNewton::values(f);
+    const int64_t linear = ForestLinear::values(f), newton = moves_in_forest(f.schedule[0]->way.positions) ? ForestNewton::values(f) : 0;
     return (linear > newton ? linear : newton) * static_cast<int64_t>(sizeof(vec)) + OneTree::bytes(f) +
            OneTreeNewton::bytes(f) + 64 + careful + open_bytes(f);
 }

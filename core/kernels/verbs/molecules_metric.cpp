@@ -36,13 +36,10 @@ struct MetricWork {
     }
 };
 
-bool is_tree(const Schedule &s) { return s.type == Schedule::tree && s.max_children <= most_decomposed; }
-bool is_bare_ring(const Schedule &s) { return s.type == Schedule::ring && s.n_tree == 0; }
-
 }  // namespace
 
 int64_t metric_bytes(const Schedule &s) {
-    if (!is_tree(s) && !is_bare_ring(s)) return 0;
+    if (s.way.metric == Way::careful) return 0;
     return s.n_bonds <= largest_in_lanes ? Metric<vec>::values(s) * static_cast<int64_t>(sizeof(vec))
                                          : Metric<double>::values(s) * static_cast<int64_t>(sizeof(double));
 }
@@ -50,11 +47,11 @@ int64_t metric_bytes(const Schedule &s) {
 void molecules_metric(const MetricCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
     const Schedule &schedule = *unit.schedule;
     NextMolecules ahead;  // its arithmetic takes longer than its memory
-    if (is_tree(schedule)) {
+    if (schedule.way.metric == Way::tree) {
         const MetricWork<TreeMetric> work = {call, schedule, tally};
         return for_each_block(unit, scratch, ahead, work);
     }
-    if (is_bare_ring(schedule)) {
+    if (schedule.way.metric == Way::ring) {
         const MetricWork<RingMetric> work = {call, schedule, tally};
         return for_each_block(unit, scratch, ahead, work);
     }

@@ -25,15 +25,14 @@ static int64_t list_bytes(const FlatList &s) {
 }
 
 int64_t molecules_scratch_bytes(const Schedule &s) {
-    if (s.network) {
+    if (s.way.positions == Way::network) {
         const int64_t careful = s.careful ? s.careful->careful_bytes + 64 : 0,
                       own = HOL_NETWORKS::network_bytes(*s.network);
         return own > careful ? own : careful;
     }
-    const bool in_lanes = is_in_lanes(s);
-    const int64_t most = s.flat     ? (in_lanes ? list_bytes<vec>(*s.flat) : list_bytes<double>(*s.flat))
-                         : in_lanes ? block_bytes<vec>(s)
-                                    : block_bytes<double>(s),
+    const int64_t most = s.flat    ? (s.alone ? list_bytes<double>(*s.flat) : list_bytes<vec>(*s.flat))
+                         : s.alone ? block_bytes<double>(s)
+                                   : block_bytes<vec>(s),
                   paths = s.paths ? path_positions_bytes(s) : 0,
                   armed = ArmedTree::values(s) * static_cast<int64_t>(sizeof(double)),
                   more = armed > paths ? armed : paths, linear = (most > more ? most : more) + 64 + s.careful_bytes,
@@ -41,26 +40,35 @@ int64_t molecules_scratch_bytes(const Schedule &s) {
     return linear > metric ? linear : metric;
 }
 
-// Along paths, where there are some and they will do.
-struct LargePositionsWork : PositionsWork {
+// Along paths, where they will do, and with the way of all others where not.
+struct PathsPositionsWork : PositionsWork {
     template <class V>
-    void block(const MoleculeLane *lane, int used, bool known, double *scratch) const {
-        if (schedule.paths && path_positions(call, schedule, *lane, team, scratch, tally)) return;
-        PositionsWork::block<V>(lane, used, known && !schedule.paths, scratch);
+    void block(const MoleculeLane *lane, int used, bool, double *scratch) const {
+        if (path_positions(call, schedule, *lane, team, scratch, tally)) return;
+        if (schedule.flat) return along_list<V>(lane, used, false, scratch);
+        if (schedule.type == Schedule::ring) return solve<RingNewton<V>>(lane, used, false, scratch);
+        solve<Newton<V>>(lane, used, false, scratch);
     }
 };
 
 void molecules_positions(const PositionsCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
-    if (unit.forests && !unit.schedule->flat) return forests_positions(call, unit, scratch, tally);
+    const Way way = unit.schedule->way.positions;
+    if (unit.forests && moves_in_forest(way)) return forests_positions(call, unit, scratch, tally);
     const bool packed = call.r.packed && call.r_ref.packed && (!call.v.x || call.v.packed);
-    if (unit.schedule->network) return solve_networks(call, unit, packed, scratch, tally);
-    if (unit.schedule->type == Schedule::triangle)
+    if (way == Way::network) return solve_networks(call, unit, packed, scratch, tally);
+    if (way == Way::triangle)
         return for_each_triangle(TrianglePositionsVerb{call, tally}, unit, packed, scratch);
     NextMolecules ahead({&call.r_ref, &call.r, &call.v}, call.lambda);
-    LargePositionsWork work = {{call, *unit.schedule, packed, tally, unit.team, ahead}};
+    const PositionsWork work = {call, *unit.schedule, packed, tally, unit.team, ahead};
+    if (way == Way::paths) {
+        const PathsPositionsWork along_paths = {work};
+        return for_each_block(unit, scratch, ahead, along_paths);
+    }
     const StarPositionsVerb stars = {call, tally};
-    if (call.guess || !(do_stars<3>(stars, work, unit, scratch) || do_stars<4>(stars, work, unit, scratch)))
-        for_each_block(unit, scratch, ahead, work);
+    if (way == Way::star && !call.guess &&
+        (do_stars<3>(stars, work, unit, scratch) || do_stars<4>(stars, work, unit, scratch)))
+        return;
+    for_each_block(unit, scratch, ahead, work);
 }
 
 }  // namespace holonomic::HOL_ISA

@@ -11,12 +11,14 @@ using namespace graph;
 void molecules_velocities(const VelocitiesCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
     if (unit.forests) return forests_velocities(call, unit, scratch, tally);
     const bool packed = call.r.packed && call.v.packed;
-    if (unit.schedule->network) return solve_networks(call, unit, packed, scratch, tally);
-    if (unit.schedule->type == Schedule::triangle)
+    const Way way = unit.schedule->way.forces;
+    if (way == Way::network) return solve_networks(call, unit, packed, scratch, tally);
+    if (way == Way::triangle)
         return for_each_triangle(TriangleVelocitiesVerb(call, tally), unit, packed, scratch);
     NextMolecules ahead({&call.r, &call.v}, call.lambda);
-    const LinearWork<VelocitiesCall> work = {call, *unit.schedule, packed, tally, unit.team, ahead};
-    if (!do_stars<3>(StarVelocitiesVerb{call, tally}, work, unit, scratch)) for_each_block(unit, scratch, ahead, work);
+    const LinearWork<VelocitiesCall> work = {call, *unit.schedule, way, packed, tally, unit.team, ahead};
+    if (way == Way::star && do_stars<3>(StarVelocitiesVerb{call, tally}, work, unit, scratch)) return;
+    for_each_block(unit, scratch, ahead, work);
 }
 
 }  // namespace holonomic::HOL_ISA

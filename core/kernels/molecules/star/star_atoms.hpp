@@ -8,20 +8,6 @@
 
 namespace holonomic::HOL_ISA::graph {
 
-// Returns the centre of a star of N bonds without fixed atoms, or -1 if the shape is none.
-template <int N>
-static inline int centre_of_star(const Schedule &s) {
-    if (s.type != Schedule::tree || s.n_bonds != N) return -1;
-    for (int a = 0; a <= N; ++a)
-        if (s.fixed[a]) return -1;
-    for (int c = 0; c <= N; ++c) {
-        bool all = true;
-        for (int k = 0; k < N; ++k) all = all && (s.atom_i[k] == c || s.atom_j[k] == c);
-        if (all) return c;
-    }
-    return -1;
-}
-
 // Moves the centre to the front, or back to its place.
 template <class V>
 HOL_NOINLINE void move_centre(Vector3<V> *atoms, int from, int to) {
@@ -153,13 +139,12 @@ static inline int64_t do_twins(const MoleculeUnit &unit, double *scratch, Work &
     return done;
 }
 
-// Does a unit of stars of N bonds, if it is one.
+// Does a unit of stars, if they have N bonds.
 template <int N, class Verb, class General>
 static inline bool do_stars(const Verb &verb, const General &general, const MoleculeUnit &unit, double *scratch) {
     if constexpr (small_set) return false;  // they are trees, too
-    const int centre = centre_of_star<N>(*unit.schedule);
-    if (centre < 0) return false;
-    StarWork<N, Verb, General> work(verb, general, centre);
+    if (unit.schedule->n_bonds != N) return false;
+    StarWork<N, Verb, General> work(verb, general, unit.schedule->star_centre);
     int64_t done = 0;
     if constexpr (StarWork<N, Verb, General>::in_twins) done = do_twins(unit, scratch, work);
     if (done == unit.count) return true;

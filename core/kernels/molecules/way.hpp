@@ -1,0 +1,45 @@
+// The ways that a molecule that is no chain may take, and their limits. core/molecules/way.cpp decides, once per shape;
+// all others switch over what it has said.
+#pragma once
+
+#include <stdint.h>
+
+namespace holonomic {
+
+enum class Way : int32_t {
+    triangle,    // triangle/: three atoms with three distances, in closed form
+    star,        // star/: three or four bonds at one atom, in closed form
+    ring,        // ring/: a ring without side atoms, along the ring
+    tree,        // tree/: W molecules in lanes, leaves first; ring/ for the ring of a ring with trees
+    list,        // list/: all bonds along one list; W molecules in lanes, or a large one by itself
+    one_tree,    // forest/: one large tree, W of its atoms at a time
+    armed_tree,  // armed_tree/: one large tree of long linear parts, these as chains; where that fails, the list
+    paths,       // paths/: one large molecule of long linear parts, joined at knots; where that fails, the list
+    network,     // network/: one large molecule of strands that meet at nodes
+    careful,     // careful/: in twice the precision, one by one
+};
+
+// By what is asked. Velocities take the way of forces.
+struct Ways {
+    Way forces, given, positions, metric;  // given: for right-hand sides of the caller's
+};
+// Positions of what is in a forest for its forces: the largest trees have another way.
+static inline bool moves_in_forest(Way positions) { return positions == Way::tree || positions == Way::one_tree; }
+
+// Molecules of more bonds are worked on one by one, trees in pieces.
+constexpr int32_t largest_in_lanes = 2048;
+// Those with cycles gain nothing by lanes from fewer on: a list (flat_list.hpp) serves one of them as fast as lanes
+// serve each of four, and most are the only one of their kind.
+constexpr int32_t largest_graph_in_lanes = 256;
+// The most children of an atom of a ring with trees: chemical ones have no more. With others it is a graph.
+constexpr int32_t most_on_ring = 2;
+constexpr int32_t slots_of_piece = 2048;  // so many bonds at work fill a second-level cache
+
+// Bonds of an arm: what is done once an arm is little beside what is done for its bonds, and these stay in cache. All
+// but one are a multiple of arm_step, so that segments in as many lanes are equally long.
+constexpr int32_t arm_step = 8, shortest_arm = 5 * arm_step + 1, longest_arm = 128 * arm_step + 1;
+
+// An atom of a tree with more children is eliminated by a matrix of three rows (tree/many.hpp).
+constexpr int32_t most_decomposed = 7;
+
+}  // namespace holonomic
