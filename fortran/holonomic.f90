@@ -26,6 +26,7 @@ module holonomic
                           HOL_PHYSICAL, HOL_SHAPE_CHAIN, HOL_SHAPE_OTHER, HOL_SHAPE_RIGID, HOL_SHAPE_RING, &
                           HOL_SHAPE_TREE, &
                           HOL_SHAPE_TRIANGLE, HOL_UNIT_DIAGONAL
+   use holonomic_factors, only: hol_factors
    use holonomic_inverse, only: hol_inverse
    use holonomic_metric, only: chain_set_metric
    use holonomic_status, only: text_of
@@ -33,7 +34,7 @@ module holonomic
                                     partition_of_masses, pivots, solve
    implicit none
    private
-   public :: hol_chains, hol_inverse, hol_report, hol_worst
+   public :: hol_chains, hol_factors, hol_inverse, hol_report, hol_worst
    public :: hol_version, hol_version_number, hol_status_name, hol_instruction_set, hol_error_location
    public :: hol_tridiagonal_pivots, hol_tridiagonal_log_det, hol_tridiagonal_solve, hol_tridiagonal_inverse_entry, &
              hol_tridiagonal_inverse_band, hol_partition_function
