@@ -20,7 +20,8 @@ module holonomic_counts
       procedure :: n_bonds
       procedure :: degrees_of_freedom
       procedure :: memory
-      procedure :: n_of_shape
+      procedure, private :: n_of_shape_32, n_of_shape_64
+      generic :: n_of_shape => n_of_shape_32, n_of_shape_64
       procedure :: n_kinds
       procedure :: adjustment
       procedure :: implied
@@ -73,13 +74,6 @@ contains
    pure recursive integer(int64) function memory(self)
       class(chain_set_counts), intent(in) :: self
       memory = hol_chains_memory(self%c_handle())
-   end function
-
-   ! Molecules of a shape (HOL_SHAPE_...).
-   pure recursive integer(int64) function n_of_shape(self, shape)
-      class(chain_set_counts), intent(in) :: self
-      integer, intent(in) :: shape
-      n_of_shape = hol_chains_n_of_shape(self%c_handle(), int(shape, c_int))
    end function
 
    ! Different kinds of molecules: of the same shape, masses and lengths.
@@ -154,11 +148,13 @@ contains
    end subroutine
 
 #define INTEGERS 32
+#define N_OF_SHAPE n_of_shape_32
 #define OFFSETS offsets_32
 #define MOLECULES_OF_BONDS molecules_of_bonds_32
 #define ATOMS_OF_ALL atoms_of_all_32
 #include "counts.inc"
 #define INTEGERS 64
+#define N_OF_SHAPE n_of_shape_64
 #define OFFSETS offsets_64
 #define MOLECULES_OF_BONDS molecules_of_bonds_64
 #define ATOMS_OF_ALL atoms_of_all_64

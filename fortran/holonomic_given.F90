@@ -16,7 +16,8 @@ module holonomic_given
 
    type, extends(chain_set_counts) :: chain_set_given
    contains
-      procedure :: set_bodies
+      procedure, private :: set_bodies_32, set_bodies_64
+      generic :: set_bodies => set_bodies_32, set_bodies_64
       ! What was set, or is the default.
       procedure :: bodies, checks, threads, keeps_outcomes, max_iterations, tolerance, length_tolerance, memory_limit
       procedure :: active
@@ -39,18 +40,6 @@ module holonomic_given
 
 contains
 
-   ! HOL_BODIES_FOUND (the default) or HOL_BODIES_GIVEN: whether distances that depend on each other become bodies.
-   subroutine set_bodies(self, which, stat, errmsg)
-      class(chain_set_given), intent(inout) :: self
-      integer, intent(in) :: which
-      integer, intent(out), optional :: stat
-      character(*), intent(inout), optional :: errmsg
-      type(failure) :: problem
-      call problem%need_created(self%c_handle())
-      if (problem%none()) call problem%ask(hol_chains_set_bodies(self%c_handle(), int(which, c_int)))
-      call settle(problem, "set_bodies", stat, errmsg)
-   end subroutine
-
 #define INTEGERS 32
 #define REALS 32
 #define SET_LENGTH set_length_32_32
@@ -69,6 +58,7 @@ contains
 #include "given.inc"
 #define INTEGERS 32
 #define REALS 32
+#define SET_BODIES set_bodies_32
 #define BOND_PAIRS bond_pairs_32
 #define BOND_LENGTHS bond_lengths_32
 #define ATOM_MASSES atom_masses_32
@@ -78,6 +68,7 @@ contains
 #include "given_arrays.inc"
 #define INTEGERS 64
 #define REALS 64
+#define SET_BODIES set_bodies_64
 #define BOND_PAIRS bond_pairs_64
 #define BOND_LENGTHS bond_lengths_64
 #define ATOM_MASSES atom_masses_64

@@ -25,7 +25,8 @@ module holonomic_settings
          set_reference_box_lengths_32
       procedure, private :: set_box_rate_matrix, set_box_rate_32
       generic :: set_box_rate => set_box_rate_matrix, set_box_rate_32
-      procedure :: set_checks
+      procedure, private :: set_checks_32, set_checks_64
+      generic :: set_checks => set_checks_32, set_checks_64
       procedure, private :: set_labels_none, set_labels_32, set_labels_64
       generic :: set_labels => set_labels_none, set_labels_32, set_labels_64
       procedure :: set_threads
@@ -91,18 +92,6 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       call self%set_box_rate(real(L, real64), stat, errmsg)
-   end subroutine
-
-   ! HOL_NEVER, HOL_AT_START (the default) or HOL_ALWAYS: when project_positions compares positions with the lengths.
-   subroutine set_checks(self, when, stat, errmsg)
-      class(chain_set_settings), intent(inout) :: self
-      integer, intent(in) :: when
-      integer, intent(out), optional :: stat
-      character(*), intent(inout), optional :: errmsg
-      type(failure) :: problem
-      call problem%need_created(self%c_handle())
-      call problem%ask(hol_chains_set_checks(self%c_handle(), int(when, c_int)))
-      call settle(problem, "set_checks", stat, errmsg)
    end subroutine
 
    ! Numbers of atoms and molecules for messages; of size 0 or absent: none.
@@ -190,6 +179,7 @@ contains
 
 #define INTEGERS 32
 #define REALS 32
+#define SET_CHECKS set_checks_32
 #define SET_TOLERANCE set_tolerance_32
 #define SET_LENGTH_TOLERANCE set_length_tolerance_32
 #define SET_MEMORY_LIMIT set_memory_limit_32
@@ -198,6 +188,7 @@ contains
 #include "settings.inc"
 #define INTEGERS 64
 #define REALS 64
+#define SET_CHECKS set_checks_64
 #define SET_TOLERANCE set_tolerance_64
 #define SET_LENGTH_TOLERANCE set_length_tolerance_64
 #define SET_MEMORY_LIMIT set_memory_limit_64
