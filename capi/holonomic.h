@@ -679,6 +679,45 @@ HOL_API int hol_chains_masses(const hol_chains *chains, double *masses);
  */
 HOL_API int hol_chains_box(const hol_chains *chains, hol_which_box which, double *box);
 
+/**
+ * What has been set, or is the default: the index base; hol_bodies; hol_when; threads; 1 or 0, whether outcomes are
+ * kept; the two tolerances and the bounds, 0 where that means a default. 0 if chains is NULL. Since 0.3.
+ */
+HOL_API int hol_chains_index_base(const hol_chains *chains);
+HOL_API int hol_chains_bodies(const hol_chains *chains);
+HOL_API int hol_chains_checks(const hol_chains *chains);
+HOL_API int hol_chains_threads(const hol_chains *chains);
+HOL_API int hol_chains_outcomes(const hol_chains *chains);
+HOL_API double hol_chains_tolerance(const hol_chains *chains);
+HOL_API double hol_chains_length_tolerance(const hol_chains *chains);
+HOL_API int hol_chains_max_iterations(const hol_chains *chains);
+HOL_API int64_t hol_chains_memory_limit(const hol_chains *chains);
+
+/**
+ * The rate of the box that was set.
+ * @param[in]  chains
+ * @param[out] L  [3][3], zeros if there is none
+ * @return HOL_OK; HOL_ERR_NULL. Since 0.3.
+ */
+HOL_API int hol_chains_box_rate(const hol_chains *chains, double *L);
+
+/**
+ * Which molecules are active.
+ * @param[in]  chains
+ * @param[out] active  [n_molecules], 1 or 0
+ * @return HOL_OK; HOL_ERR_NULL. Since 0.3.
+ */
+HOL_API int hol_chains_active(const hol_chains *chains, unsigned char *active);
+
+/**
+ * The labels that were set; of what has none its number, counted from the index base. Each output may be NULL.
+ * @param[in]  chains
+ * @param[out] atoms      [n_atoms]
+ * @param[out] molecules  [n_molecules]
+ * @return HOL_OK; HOL_ERR_NULL (chains). Since 0.3.
+ */
+HOL_API int hol_chains_labels(const hol_chains *chains, int64_t *atoms, int64_t *molecules);
+
 /** What became of a bond that was given. Values are never changed nor reused. Since 0.3. */
 typedef enum hol_role HOL_IS_INT {
     HOL_ROLE_OWN = 0,     /**< a constraint with a multiplier of its own */

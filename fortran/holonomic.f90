@@ -14,7 +14,7 @@
 ! from 1. Every procedure has the optional arguments stat and errmsg of ALLOCATE.
 module holonomic
    use, intrinsic :: iso_c_binding, only: c_int, c_int64_t, c_loc
-   use, intrinsic :: iso_fortran_env, only: int64
+   use, intrinsic :: iso_fortran_env, only: int32, int64
    use holonomic_c, only: hol_report, hol_worst, HOL_OK, HOL_ERR_NULL, HOL_ERR_VALUE, HOL_ERR_INDEX, &
                           HOL_ERR_SHARED_ATOM, HOL_ERR_MEMORY, HOL_ERR_NOT_FINITE, HOL_ERR_DEGENERATE, &
                           HOL_ERR_NO_CONVERGENCE, HOL_ERR_NOT_DEFINITE, HOL_ERR_INTERNAL, HOL_ERR_LENGTHS, &
@@ -26,6 +26,7 @@ module holonomic
                           HOL_PHYSICAL, HOL_SHAPE_CHAIN, HOL_SHAPE_OTHER, HOL_SHAPE_RIGID, HOL_SHAPE_RING, &
                           HOL_SHAPE_TREE, &
                           HOL_SHAPE_TRIANGLE, HOL_UNIT_DIAGONAL
+   use holonomic_factors, only: hol_factors
    use holonomic_inverse, only: hol_inverse
    use holonomic_metric, only: chain_set_metric
    use holonomic_status, only: text_of
@@ -33,7 +34,7 @@ module holonomic
                                     partition_of_masses, pivots, solve
    implicit none
    private
-   public :: hol_chains, hol_inverse, hol_report, hol_worst
+   public :: hol_chains, hol_factors, hol_inverse, hol_report, hol_worst
    public :: hol_version, hol_version_number, hol_status_name, hol_instruction_set, hol_error_location
    public :: hol_tridiagonal_pivots, hol_tridiagonal_log_det, hol_tridiagonal_solve, hol_tridiagonal_inverse_entry, &
              hol_tridiagonal_inverse_band, hol_partition_function
@@ -84,7 +85,7 @@ module holonomic
    end interface
 
    interface hol_status_name
-      procedure :: status_name
+      procedure :: status_name_32, status_name_64
    end interface
 
    interface hol_instruction_set
@@ -107,8 +108,14 @@ contains
       version_number = int(c_version_number())
    end function
 
-   function status_name(status) result(text)
-      integer, intent(in) :: status
+   function status_name_32(status) result(text)
+      integer(int32), intent(in) :: status
+      character(:), allocatable :: text
+      text = text_of(c_status_name(int(status, c_int)))
+   end function
+
+   function status_name_64(status) result(text)
+      integer(int64), intent(in) :: status
       character(:), allocatable :: text
       text = text_of(c_status_name(int(status, c_int)))
    end function

@@ -1,38 +1,32 @@
-! Which atoms are joined by rigid bonds. Here type(hol_chains) begins: it is created and destroyed, and linear chains
-! are added. The modules holonomic_bonds, holonomic_settings, holonomic_counts, holonomic_forces and so on extend the type,
+! Which atoms are joined by rigid bonds. Here type(hol_chains) begins: it is created, copied and destroyed. The modules holonomic_bonds, holonomic_settings, holonomic_counts, holonomic_forces and so on extend the type,
 ! each by one ability; the module `holonomic` has the whole. Atoms, bonds and molecules are counted from 1.
 module holonomic_chains
    use, intrinsic :: iso_c_binding, only: c_associated, c_int, c_int64_t, c_loc, c_null_ptr, c_ptr
-   use, intrinsic :: iso_fortran_env, only: int32, int64, real64
-   use holonomic_c, only: hol_chains_add, hol_chains_add_block, hol_chains_copy, hol_chains_create, hol_chains_destroy, &
-                          hol_chains_set_index_base, hol_error_location, HOL_ERR_VALUE
+   use, intrinsic :: iso_fortran_env, only: real32, real64
+   use holonomic_c, only: hol_chains_copy, hol_chains_create, hol_chains_destroy, hol_chains_set_index_base, &
+                          hol_error_location, HOL_ERR_VALUE
    use holonomic_ownership, only: ownership
    use holonomic_status, only: decimal, failure, settle
    implicit none
    private
-   public :: chain_set, repeated
+   public :: chain_set
 
    type :: chain_set
       private
       type(c_ptr) :: handle = c_null_ptr
       type(ownership) :: owner
    contains
-      procedure, private :: create_set
-      generic :: create => create_set
+      procedure, private :: create_32, create_64   ! masses of either precision
+      generic :: create => create_32, create_64
       procedure :: copy_of
       procedure :: adopt
       procedure :: destroy
-      procedure, private :: add_list_32, add_list_64, add_list_one_length_32, add_list_one_length_64
-      procedure, private :: add_block_32, add_block_64, add_block_one_length_32, add_block_one_length_64
-      ! add(atoms, lengths): one linear chain by its atoms. add(n_chains, n_bonds, first_atom, lengths): a block of them.
-      generic :: add => add_list_32, add_list_64, add_list_one_length_32, add_list_one_length_64, &
-         add_block_32, add_block_64, add_block_one_length_32, add_block_one_length_64
       procedure :: c_handle   ! for calls of the module holonomic_c
    end type
 
 contains
 
-   subroutine create_set(self, masses, stat, errmsg)
+   subroutine create_64(self, masses, stat, errmsg)
       class(chain_set), intent(inout) :: self
       real(real64), intent(in), contiguous, target :: masses(:)
       integer, intent(out), optional :: stat
@@ -61,6 +55,14 @@ contains
          if (problem%none()) call self%owner%take()
       end if
       call settle(problem, "create", stat, errmsg)
+   end subroutine
+
+   subroutine create_32(self, masses, stat, errmsg)
+      class(chain_set), intent(inout) :: self
+      real(real32), intent(in) :: masses(:)
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      call self%create(real(masses, real64), stat, errmsg)
    end subroutine
 
    ! Molecules of its own, as those of another variable are now, with its options: to be changed apart from them.
@@ -92,106 +94,9 @@ contains
       if (c_associated(self%handle)) call self%owner%take()
    end subroutine
 
-   subroutine add_list_64(self, atoms, lengths, stat, errmsg)
-      class(chain_set), intent(inout) :: self
-      integer(int64), intent(in), contiguous, target :: atoms(:)
-      real(real64), intent(in), contiguous, target :: lengths(:)
-      integer, intent(out), optional :: stat
-      character(*), intent(inout), optional :: errmsg
-      type(failure) :: problem
-      integer(c_int64_t) :: n_bonds
-      call problem%need_created(self%handle)
-      n_bonds = max(size(atoms, kind=c_int64_t) - 1, 0_c_int64_t)
-      if (size(lengths, kind=c_int64_t) /= n_bonds) then
-         call problem%set(HOL_ERR_VALUE, decimal(size(lengths, kind=c_int64_t))//" lengths were given for "// &
-                          decimal(n_bonds)//" bonds")
-      else if (n_bonds > 0) then
-         call problem%ask(hol_chains_add(self%handle, n_bonds, c_loc(atoms), c_loc(lengths)))
-      end if
-      call settle(problem, "add", stat, errmsg)
-   end subroutine
-
-   subroutine add_list_32(self, atoms, lengths, stat, errmsg)
-      class(chain_set), intent(inout) :: self
-      integer(int32), intent(in) :: atoms(:)
-      real(real64), intent(in), contiguous, target :: lengths(:)
-      integer, intent(out), optional :: stat
-      character(*), intent(inout), optional :: errmsg
-      call self%add(int(atoms, int64), lengths, stat, errmsg)
-   end subroutine
-
-   subroutine add_list_one_length_64(self, atoms, lengths, stat, errmsg)
-      class(chain_set), intent(inout) :: self
-      integer(int64), intent(in), contiguous, target :: atoms(:)
-      real(real64), intent(in) :: lengths
-      integer, intent(out), optional :: stat
-      character(*), intent(inout), optional :: errmsg
-      call self%add(atoms, repeated(lengths, size(atoms, kind=int64) - 1), stat, errmsg)
-   end subroutine
-
-   subroutine add_list_one_length_32(self, atoms, lengths, stat, errmsg)
-      class(chain_set), intent(inout) :: self
-      integer(int32), intent(in) :: atoms(:)
-      real(real64), intent(in) :: lengths
-      integer, intent(out), optional :: stat
-      character(*), intent(inout), optional :: errmsg
-      call self%add(int(atoms, int64), repeated(lengths, size(atoms, kind=int64) - 1), stat, errmsg)
-   end subroutine
-
-   subroutine add_block_64(self, n_chains, n_bonds, first_atom, lengths, stat, errmsg)
-      class(chain_set), intent(inout) :: self
-      integer(int64), intent(in) :: n_chains, n_bonds, first_atom
-      real(real64), intent(in), contiguous, target :: lengths(:)
-      integer, intent(out), optional :: stat
-      character(*), intent(inout), optional :: errmsg
-      type(failure) :: problem
-      call problem%need_created(self%handle)
-      if (size(lengths, kind=int64) /= max(n_bonds, 0_int64)) then
-         call problem%set(HOL_ERR_VALUE, decimal(size(lengths, kind=int64))//" lengths were given for "// &
-                          decimal(n_bonds)//" bonds")
-      else
-         call problem%ask(hol_chains_add_block(self%handle, n_chains, n_bonds, first_atom, c_loc(lengths)))
-      end if
-      call settle(problem, "add", stat, errmsg)
-   end subroutine
-
-   subroutine add_block_32(self, n_chains, n_bonds, first_atom, lengths, stat, errmsg)
-      class(chain_set), intent(inout) :: self
-      integer(int32), intent(in) :: n_chains, n_bonds, first_atom
-      real(real64), intent(in), contiguous, target :: lengths(:)
-      integer, intent(out), optional :: stat
-      character(*), intent(inout), optional :: errmsg
-      call self%add(int(n_chains, int64), int(n_bonds, int64), int(first_atom, int64), lengths, stat, errmsg)
-   end subroutine
-
-   subroutine add_block_one_length_64(self, n_chains, n_bonds, first_atom, lengths, stat, errmsg)
-      class(chain_set), intent(inout) :: self
-      integer(int64), intent(in) :: n_chains, n_bonds, first_atom
-      real(real64), intent(in) :: lengths
-      integer, intent(out), optional :: stat
-      character(*), intent(inout), optional :: errmsg
-      call self%add(n_chains, n_bonds, first_atom, repeated(lengths, n_bonds), stat, errmsg)
-   end subroutine
-
-   subroutine add_block_one_length_32(self, n_chains, n_bonds, first_atom, lengths, stat, errmsg)
-      class(chain_set), intent(inout) :: self
-      integer(int32), intent(in) :: n_chains, n_bonds, first_atom
-      real(real64), intent(in) :: lengths
-      integer, intent(out), optional :: stat
-      character(*), intent(inout), optional :: errmsg
-      call self%add(int(n_chains, int64), int(n_bonds, int64), int(first_atom, int64), lengths, stat, errmsg)
-   end subroutine
-
    pure recursive type(c_ptr) function c_handle(self)
       class(chain_set), intent(in) :: self
       c_handle = self%handle
-   end function
-
-   pure function repeated(length, n) result(lengths)
-      real(real64), intent(in) :: length
-      integer(int64), intent(in) :: n
-      real(real64), allocatable :: lengths(:)
-      allocate (lengths(max(n, 0_int64)), source=length)
    end function
 
 end module

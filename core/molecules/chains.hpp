@@ -70,6 +70,7 @@ public:
     void set_labels(const std::int64_t *atoms, const std::int64_t *molecules) {
         labels_.set(n_atoms_, atoms, n_molecules(), molecules);
     }
+    const Labels &labels() const { return labels_; }
     void set_base(int counted_from);  // before anything is added. Throws Error
     void set_box(const double *h);
     void set_reference_box(const double *h);
@@ -94,6 +95,7 @@ public:
     void pairs(std::int64_t *out) const;                            // [n_bonds][2]
     void lengths(double *out) const;                                // [n_bonds]
     void masses(double *out) const { masses_.copy(out); }           // [n_atoms]
+    void active(unsigned char *out) const;                          // [n_molecules]
     void roles(std::int32_t *role, std::int64_t *n_removed) const;  // [n_bonds] a Role each, [n_molecules]; or null
     void held_sites(unsigned char *held) const;                     // held_sites.cpp [n_atoms] 1 or 0
     const double *given_box() const { return given_box_.h; }        // [9], zeros: none

@@ -47,6 +47,14 @@ Name Labels::of_molecule(std::int64_t molecule, std::int64_t atom, int base) con
     return name;
 }
 
+std::int64_t Labels::number_of_atom(std::int64_t atom, int base) const {
+    return at(atom) < atoms_.size() ? atoms_[at(atom)] : atom + base;
+}
+
+std::int64_t Labels::number_of_molecule(std::int64_t molecule, int base) const {
+    return at(molecule) < molecules_.size() ? molecules_[at(molecule)] : molecule + base;
+}
+
 std::int64_t Labels::bytes() const {
     return static_cast<std::int64_t>((atoms_.capacity() + molecules_.capacity()) * sizeof(std::int64_t));
 }

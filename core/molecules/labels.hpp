@@ -21,6 +21,10 @@ public:
     // Of a molecule that has no label, one of its atoms is shown, if these have labels.
     Name of_molecule(std::int64_t molecule, std::int64_t atom, int base) const;
 
+    // The label, or the number where there is none.
+    std::int64_t number_of_atom(std::int64_t atom, int base) const;
+    std::int64_t number_of_molecule(std::int64_t molecule, int base) const;
+
     std::int64_t bytes() const;
 
 private:

@@ -174,6 +174,11 @@ void Chains::lengths(double *out) const {
     for_bonds([&](std::int64_t bond, std::int64_t, std::int64_t, double length, Role) { out[bond] = length; });
 }
 
+void Chains::active(unsigned char *out) const {
+    for (std::int64_t m = 0; m < n_chains(); ++m) *out++ = is_active(m) ? 1 : 0;
+    for (std::int64_t m = 0; bodies_ && m < bodies_->n_molecules(); ++m) *out++ = bodies_->is_active(m) ? 1 : 0;
+}
+
 void Chains::roles(std::int32_t *role, std::int64_t *n_removed) const {
     if (role)
         for_bonds([&](std::int64_t bond, std::int64_t, std::int64_t, double, Role its) {

@@ -21,6 +21,24 @@ int main(void)
     ok(hol_chains_set_max_iterations(chains, 20));
     ok(hol_chains_set_memory_limit(chains, 1 << 30)); /* what cycles may fill; 0: a quarter of the machine's */
     ok(hol_chains_set_active(chains, active));        /* the second chain is left out of every call */
+    shows("threads", hol_chains_threads(chains), 2); /* each option tells what it is */
+    shows("tolerance", hol_chains_tolerance(chains), 1e-10);
+    shows("tolerance of lengths", hol_chains_length_tolerance(chains), 1e-3);
+    shows("iterations", hol_chains_max_iterations(chains), 20);
+    shows("memory", (double)hol_chains_memory_limit(chains), 1 << 30);
+    shows("index base", hol_chains_index_base(chains), 1);
+    shows("checks", hol_chains_checks(chains), HOL_AT_START);
+    shows("bodies", hol_chains_bodies(chains), HOL_BODIES_FOUND);
+    shows("outcomes", hol_chains_outcomes(chains), 0);
+    unsigned char is_active[2];
+    int64_t labels[4];
+    double rate[9];
+    ok(hol_chains_active(chains, is_active));
+    shows("second chain", is_active[1], 0);
+    ok(hol_chains_labels(chains, labels, NULL));
+    shows("label of the first atom", (double)labels[0], 1);
+    ok(hol_chains_box_rate(chains, rate));
+    shows("rate of the box", rate[0], 0);
     shows("degrees of freedom", (double)hol_chains_degrees_of_freedom(chains, 3), 3 * 4 - 1);
     ok(hol_chains_set_active(chains, NULL));
 

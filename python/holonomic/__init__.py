@@ -16,6 +16,7 @@ from ._queries import Molecule
 from .errors import (ArgumentError, DegenerateError, Error, LengthsError, LengthsWarning, MasslessWarning,
                      NoConvergenceError, NotDefiniteError, NotFiniteError, NumberError, OutOfMemoryError, ReferenceWarning,
                      SharedAtomError, StateError, UnsupportedError)
+from .factors import Factors
 from .inverse import Inverse
 from .molecules import Molecules
 from .partition import PartitionFunction, partition_function
@@ -23,9 +24,9 @@ from .results import Forces, Impulse, Metric, Outcomes, Reactions, Report, Viola
 
 __version__ = "0.3.0"
 __all__ = [
-    "ArgumentError", "DegenerateError", "Error", "Forces", "Impulse", "Inverse", "LengthsError", "LengthsWarning",
-    "MasslessWarning", "Metric", "Molecule", "Molecules", "NoConvergenceError", "NotDefiniteError", "NotFiniteError",
-    "NumberError", "OutOfMemoryError", "Outcomes", "PartitionFunction", "Reactions", "ReferenceWarning",
-    "Report", "SharedAtomError",
+    "ArgumentError", "DegenerateError", "Error", "Factors", "Forces", "Impulse", "Inverse", "LengthsError",
+    "LengthsWarning", "MasslessWarning", "Metric", "Molecule", "Molecules", "NoConvergenceError", "NotDefiniteError",
+    "NotFiniteError", "NumberError", "OutOfMemoryError", "Outcomes", "PartitionFunction", "Reactions",
+    "ReferenceWarning", "Report", "SharedAtomError",
     "StateError", "UnsupportedError", "Violation", "instruction_set", "partition_function", "tridiagonal", "version",
 ]

@@ -37,6 +37,11 @@ class Added:
     def note(self, method: str, *arguments: Any) -> None:
         self._calls.append((method, tuple(np.array(a) if isinstance(a, np.ndarray) else a for a in arguments)))
 
+    def copy(self) -> Added:
+        other = Added()
+        other._calls = list(self._calls)
+        return other
+
     def repeat(self, molecules: Any) -> None:
         """Makes the same calls for another set."""
         for method, arguments in self._calls:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import warnings
 import weakref
 from ctypes import byref, c_double, c_void_p
@@ -68,8 +69,30 @@ class Bonds:
     def _settings(self) -> dict:
         return {}
 
+    def __copy__(self) -> Bonds:
+        """A set of its own, which shares what is known of the shapes of the molecules."""
+        other = self.__class__.__new__(self.__class__)
+        for part in type(self).__mro__:
+            for name in part.__dict__.get("__slots__", ()):
+                if name != "__weakref__" and hasattr(self, name):
+                    setattr(other, name, getattr(self, name))  # arrays are replaced by setters, never written to
+        handle = c_void_p()
+        ask(library.hol_chains_copy(self._handle, byref(handle)))
+        other._handle, other._destroy = handle, weakref.finalize(other, library.hol_chains_destroy, handle)
+        other._packed, other._views = PackedArrays((self._n_atoms, 3)), KnownViews(self._n_atoms)
+        other._added = self._added.copy()
+        if hasattr(self, "__dict__"):
+            other.__dict__.update(self.__dict__)
+        return other
+
+    def __deepcopy__(self, memo: dict) -> Bonds:
+        other = self.__copy__()
+        if hasattr(self, "__dict__"):
+            other.__dict__.update(copy.deepcopy(self.__dict__, memo))
+        return other
+
     def __reduce__(self) -> tuple:
-        """For copy, deepcopy and pickle: each makes a set of its own of the same molecules and settings."""
+        """For pickle: a set of its own of the same molecules and settings."""
         return (_again, (type(self), self._masses, self._fixed, self._added, self._lengths, self._settings(),
                          self._labels), getattr(self, "__dict__", None) or None)
 

@@ -40,8 +40,7 @@ class _ArraySetting:
 class Settings(Queries):
     """The part of Molecules that is set. Settings must not be changed while another thread is in a call."""
 
-    __slots__ = ("_box", "_reference_box", "_box_rate", "_active", "_threads", "_tolerance", "_max_iterations", "_checks",
-                 "_length_tolerance", "_memory_limit", "_keep_outcomes", "_find_bodies")
+    __slots__ = ("_box", "_reference_box", "_box_rate", "_active")
 
     def __init__(self, masses: Floats, fixed: Any = None):
         super().__init__(masses, fixed)
@@ -49,14 +48,6 @@ class Settings(Queries):
         self._reference_box: Optional[np.ndarray] = None
         self._box_rate: Optional[np.ndarray] = None
         self._active: Optional[np.ndarray] = None
-        self._threads = 1
-        self._tolerance = 0.0
-        self._max_iterations = 50
-        self._length_tolerance = 1e-3
-        self._checks = "at start"
-        self._memory_limit = 0
-        self._keep_outcomes = False
-        self._find_bodies = True
 
     def _settings(self) -> dict:
         """All of them, in an order in which they can be set."""
@@ -105,93 +96,85 @@ class Settings(Queries):
     @property
     def threads(self) -> int:
         """Number of threads that a call may use, 1 by default."""
-        return self._threads
+        return library.hol_chains_threads(self._handle)
 
     @threads.setter
     def threads(self, count: int) -> None:
         count = integer(count, "threads", 32)
         ask(library.hol_chains_set_threads(self._handle, count))
-        self._threads = count
 
     @property
     def keep_outcomes(self) -> bool:
         """Whether calls keep a status and a number of iterations for each molecule, for `outcomes`. False by default: many small
         molecules take several times as long with it."""
-        return self._keep_outcomes
+        return bool(library.hol_chains_outcomes(self._handle))
 
     @keep_outcomes.setter
     def keep_outcomes(self, keep: bool) -> None:
         keep = boolean(keep, "keep_outcomes")
         ask(library.hol_chains_set_outcomes(self._handle, keep))
-        self._keep_outcomes = keep
 
     @property
     def find_bodies(self) -> bool:
         """Whether distances that depend on each other become rigid bodies when they are added (default), or are refused."""
-        return self._find_bodies
+        return library.hol_chains_bodies(self._handle) == 0
 
     @find_bodies.setter
     def find_bodies(self, find: bool) -> None:
         find = boolean(find, "find_bodies")
         ask(library.hol_chains_set_bodies(self._handle, 0 if find else 1))
-        self._find_bodies = find
 
     @property
     def tolerance(self) -> float:
         """`project_positions` is done with a molecule when |d.d - a^2| / a^2 is at most this. 0 (default): the rounding."""
-        return self._tolerance
+        return library.hol_chains_tolerance(self._handle)
 
     @tolerance.setter
     def tolerance(self, tolerance: float) -> None:
         tolerance = number(tolerance, "tolerance")
         ask(library.hol_chains_set_tolerance(self._handle, tolerance))
-        self._tolerance = tolerance
 
     @property
     def max_iterations(self) -> int:
         """Bound on the iterations of `project_positions` for a molecule, 50 by default."""
-        return self._max_iterations
+        return library.hol_chains_max_iterations(self._handle)
 
     @max_iterations.setter
     def max_iterations(self, count: int) -> None:
         count = integer(count, "max_iterations", 32)
         ask(library.hol_chains_set_max_iterations(self._handle, count))
-        self._max_iterations = count
 
     @property
     def length_tolerance(self) -> float:
         """By which part of them lengths of rigid groups may be adjusted, so that they are those of places in space: 1e-3 by
         default, at most 0.01; for what is added later."""
-        return self._length_tolerance
+        return library.hol_chains_length_tolerance(self._handle)
 
     @length_tolerance.setter
     def length_tolerance(self, tolerance: float) -> None:
         tolerance = number(tolerance, "length_tolerance")
         ask(library.hol_chains_set_length_tolerance(self._handle, tolerance))
-        self._length_tolerance = tolerance
 
     @property
     def memory_limit(self) -> int:
         """Bound on the memory that the set takes, in bytes: a molecule of so many cycles that it needs more is refused when
         it is added. 0 (default): a quarter of the machine's memory."""
-        return self._memory_limit
+        return library.hol_chains_memory_limit(self._handle)
 
     @memory_limit.setter
     def memory_limit(self, limit: int) -> None:
         limit = integer(limit, "memory_limit")
         ask(library.hol_chains_set_memory_limit(self._handle, limit))
-        self._memory_limit = limit
 
     @property
     def checks(self) -> str:
         """When `project_positions` compares positions with lengths, so that a wrong unit, order or cell is an error:
         "at start" (default: in the first call and after changes), "never" (a crude start), "always".
         """
-        return self._checks
+        return _WHEN[library.hol_chains_checks(self._handle)]
 
     @checks.setter
     def checks(self, when: str) -> None:
         if when not in _WHEN:
             raise ArgumentError(f"checks is {when!r}; it must be one of {', '.join(map(repr, _WHEN))}")
         ask(library.hol_chains_set_checks(self._handle, _WHEN.index(when)))
-        self._checks = when

@@ -13,6 +13,7 @@ from ._library import bare, library
 from ._settings import Settings
 from ._types import Array, Floats, Integers
 from .errors import ArgumentError, ReferenceWarning, ask, fail
+from .factors import Factors
 from .inverse import Inverse
 from .results import Forces, Impulse, Metric, Outcomes, Reactions, Report, Violation, counted
 
@@ -278,6 +279,10 @@ class Molecules(Settings):
     def inverse(self, molecule: int, r: Floats) -> Inverse:
         """The inverse of the matrix Z of one molecule at positions r (n_atoms, 3), element by element or whole."""
         return Inverse(self._handle, molecule, self._view(r, "r"), self._n_atoms)
+
+    def factors(self, r: Floats) -> Factors:
+        """The factors of all molecules at positions r (n_atoms, 3), for any number of right-hand sides."""
+        return Factors(self, r)
 
     def __repr__(self) -> str:
         return (f"<holonomic.Molecules: {counted(self.n_molecules, 'molecule')} with {counted(self._n_bonds, 'bond')}, "

@@ -33,6 +33,9 @@ static void handles(hol_chains *chains)
     const int64_t list[2] = {2, 3};
     int64_t offsets[2], atoms[4], chain = 7, bond = 7, atom = 7, bad = 7;
     hol_chains *second = NULL;
+    unsigned char is_active[1] = {7};
+    int64_t label = 7;
+    double rate[9] = {7, 7, 7, 7, 7, 7, 7, 7, 7};
     EXPECT(strncmp(hol_version(), "0.", 2) == 0);
     EXPECT(hol_version_number() >= HOL_VERSION);
     EXPECT(strcmp(hol_status_name(HOL_ERR_DEGENERATE), "HOL_ERR_DEGENERATE") == 0);
@@ -49,6 +52,15 @@ static void handles(hol_chains *chains)
     SUCCEEDS(hol_chains_set_active(chains, active));
     SUCCEEDS(hol_chains_set_tolerance(chains, 0));
     SUCCEEDS(hol_chains_set_max_iterations(chains, 40));
+    EXPECT(hol_chains_threads(chains) == 2 && hol_chains_max_iterations(chains) == 40);
+    EXPECT(hol_chains_tolerance(chains) == 0 && hol_chains_length_tolerance(chains) == 1e-3);
+    EXPECT(hol_chains_index_base(chains) == 0 && hol_chains_memory_limit(chains) == 0);
+    EXPECT(hol_chains_bodies(chains) == HOL_BODIES_FOUND && hol_chains_checks(chains) == HOL_AT_START);
+    EXPECT(hol_chains_outcomes(chains) == 0);
+    SUCCEEDS(hol_chains_active(chains, is_active));
+    SUCCEEDS(hol_chains_labels(chains, NULL, &label));
+    SUCCEEDS(hol_chains_box_rate(chains, rate));
+    EXPECT(is_active[0] == 1 && label == 0 && rate[8] == 0);
     SUCCEEDS(hol_chains_create(4, mass, &second));
     SUCCEEDS(hol_chains_set_index_base(second, 1));
     SUCCEEDS(hol_chains_add(second, 1, list, length));

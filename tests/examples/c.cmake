@@ -8,6 +8,14 @@ example_test(shortest c shortest --
 add_test(NAME examples.shortest_is_short COMMAND sh -c "test $(wc -l < \"$1\") -le 20" sh
     ${PROJECT_SOURCE_DIR}/examples/c/shortest.c)
 
+# The same by holonomic.hpp, in ten lines beside those that include.
+example_test(shortest_cpp c shortest_cpp --
+    "tensions:" 1 = 30
+    "tensions:" 2 = 20
+    "tensions:" 3 = 10)
+add_test(NAME examples.shortest_cpp_is_short COMMAND sh -c "test $(grep -c -v -e '^#' -e '^$' \"$1\") -le 10" sh
+    ${PROJECT_SOURCE_DIR}/examples/c/shortest.cpp)
+
 # --------------------------------------------------------------------------------------------------------- tensions
 example_test(tensions c tensions ${PROJECT_SOURCE_DIR}/examples/c/rotor.txt --
     "     0" 1 = 1

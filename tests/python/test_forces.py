@@ -1,5 +1,6 @@
 """Forces, velocities and positions agree with the dense solution."""
 
+import copy
 import unittest
 
 import dense
@@ -185,6 +186,46 @@ class Positions(unittest.TestCase):
         molecules.project_positions(r_ref % 6.9, wrapped, 0.1)
         cell = 7.0 * np.eye(3)
         np.testing.assert_allclose(dense.bond_vectors(wrapped, bonds, cell), dense.bond_vectors(plain, bonds), atol=1e-13)
+
+
+class Kept(unittest.TestCase):
+    """Factors that are kept give what the set gives at their positions."""
+
+    def setUp(self):
+        rng = np.random.default_rng(5)
+        self.molecules = hol.Molecules(rng.uniform(1, 2, 12))
+        self.molecules.add([(0, 1), (1, 2), (2, 3), (1, 4), (6, 7), (8, 9), (8, 10), (8, 11)], 1.0)
+        self.r, self.v, self.f = rng.normal(size=(3, 12, 3))
+        self.rhs = rng.normal(size=(5, 8))
+
+    def test_forces_and_right_hand_sides(self):
+        kept = self.molecules.factors(self.r)
+        found, wanted = kept.forces(self.v, self.f), self.molecules.forces(self.r, self.v, self.f)
+        for name in ("lambda_", "tensions", "forces", "virial"):
+            np.testing.assert_allclose(getattr(found, name), getattr(wanted, name), rtol=1e-12, atol=1e-12)
+        found, wanted = kept.solve(self.rhs[2]), self.molecules.solve(self.r, self.rhs[2])
+        np.testing.assert_allclose(found.forces, wanted.forces, rtol=1e-12, atol=1e-12)
+        many = kept.multipliers(self.rhs)
+        for k in range(5):
+            np.testing.assert_allclose(many[k], self.molecules.solve(self.r, self.rhs[k]).lambda_, rtol=1e-12, atol=1e-12)
+        added = self.f.copy()
+        self.assertIs(kept.forces(self.v, self.f, out=added, add=True).forces, added)
+        np.testing.assert_allclose(added - self.f, self.molecules.forces(self.r, self.v, self.f).forces, rtol=1e-12, atol=1e-12)
+
+    def test_they_belong_to_positions_and_to_the_molecules_as_they_are(self):
+        kept = self.molecules.factors(np.zeros((12, 2)) + self.r[:, :2])
+        self.assertEqual(kept.forces(None, self.f[:, :2]).forces.shape, (12, 2))
+        kept.update(self.r.astype(np.float32))
+        np.testing.assert_allclose(kept.forces(None, self.f).lambda_, self.molecules.forces(self.r, None, self.f).lambda_, rtol=1e-3)
+        self.molecules.set_lengths(2.0)
+        with self.assertRaises(hol.StateError):
+            kept.solve(self.rhs[0])
+        with self.assertRaisesRegex(hol.ArgumentError, "5, 7"):
+            self.molecules.factors(self.r).multipliers(self.rhs[:, :7])
+        with self.assertRaises(TypeError):
+            copy.copy(kept)
+        with self.assertRaises(hol.DegenerateError):
+            self.molecules.factors(np.zeros((12, 3)))
 
 
 if __name__ == "__main__":

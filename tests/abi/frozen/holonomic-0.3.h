@@ -32,11 +32,11 @@
  * - Every function that can fail returns an hol_status. hol_error_message() then says in words what was wrong and
  *   where, hol_error_location() in numbers; both are the calling thread's own.
  * - A wrong argument: nothing is written. Bad data in some molecules (HOL_ERR_NOT_FINITE, HOL_ERR_DEGENERATE,
- *   HOL_ERR_NO_CONVERGENCE, after the first call also HOL_ERR_LENGTHS): their outputs stay as they were, bit for bit;
- *   all other molecules are complete; sums over molecules (virial, energy) are not written. Status, message and
- *   location are those of the first bad molecule. A fixed atom of several molecules gets the sum over those that are
- *   not bad.
- * - An output may overlap another argument only where its description says so.
+ *   HOL_ERR_NO_CONVERGENCE): their outputs stay as they were, bit for bit; all other molecules are complete; sums over
+ *   molecules (virial, energy) are not written. Status, message and location are those of the first bad molecule. A
+ *   fixed atom of several molecules gets the sum over those that are not bad.
+ * - An output may overlap another argument only where its description says so. Velocities that are the very array of
+ *   the positions, or forces that are, are HOL_ERR_VALUE.
  * - The library never prints, exits, aborts or throws.
  * - Floating-point environment: whatever the caller has set (exceptions that trap, as by gfortran's -ffpe-trap; another
  *   rounding; denormal numbers flushed to zero), each function calculates in the default environment of the processor,
@@ -213,11 +213,20 @@ HOL_API int hol_chains_add_block(hol_chains *chains, int64_t n_chains, int64_t n
  * @param[in]     lengths  [n_bonds], as in hol_chains_add. Copied.
  *
  * Distances that depend on each other are held as rigid bodies, as if hol_chains_add_rigid had been called, where their
- * lengths say so: atoms that are all bonded to each other, three on a line, four in a plane (to the rounding of the
- * lengths), five and more (to 1e-6 of them); rings of six atoms and more whose angles, held by distances of next
- * neighbours, keep them in a plane. Forces and motions are those of the body. Multipliers of such bonds are, of those
- * whose pulls come nearest to the body's forces, the ones of least norm; only forces across a line or plane have none.
- * Right-hand sides of hol_solve are not looked at for them.
+ * lengths say so: atoms that are all bonded to each other, three on a line, four in a plane, five and more; rings of
+ * six atoms and more whose angles, held by distances of next neighbours, keep them in a plane; and atoms that such a
+ * body holds by more distances than their places have coordinates. Lengths may be as a topology file has them, with few
+ * decimals: they are adjusted in the least way (hol_chains_adjustment), by no more than
+ * hol_chains_set_length_tolerance. Four atoms are flat, and three straight, where a plane or a line misses their
+ * lengths by no more than their last decimal, or where no other places are nearer. Forces and motions are those of the
+ * body. Multipliers of such bonds are, of those whose pulls come nearest to the body's forces, the ones of least norm;
+ * only forces across a line or plane have none. Right-hand sides of hol_solve are not looked at for them.
+ *
+ * Where groups of five atoms and more share atoms, as all bonds and angles of an alkane do, they are no bodies:
+ * distances that shorter ones of the molecule imply (the tenth of five atoms, ...) are left out of the equations
+ * (hol_chains_implied). Their lengths are compared with the others', within the same tolerance. Groups on a line or in
+ * a plane that share atoms with each other are linear relations (hol_chains_add_linear) and the distances that are
+ * independent beside them; multipliers of the others are 0. A length of 0 makes two atoms that can move one point.
  *
  * New molecules are numbered by their lowest atoms that can move, those with bodies behind all others. Arrays per bond
  * have these bonds in the order of the list, after those of earlier calls. All bonds of a molecule have to be given in
@@ -226,7 +235,7 @@ HOL_API int hol_chains_add_block(hol_chains *chains, int64_t n_chains, int64_t n
  *         than 2^31 - 1 bonds; lengths of a triangle or ring that can't close: the message names the atoms);
  *         HOL_ERR_INDEX; HOL_ERR_SHARED_ATOM (an atom that can move is in a molecule of an earlier call; the message
  *         names it); HOL_ERR_DEGENERATE (a bond given twice, more bonds within a part of a molecule than it has
- *         freedoms, or lengths of five atoms and more that fit no places in space: the message names a bond. Bonds
+ *         freedoms, or lengths of four atoms and more that fit no places in space: the message names a bond. Bonds
  *         that depend on each other through the positions alone are found by the calls that meet them);
  *         HOL_ERR_MEMORY (also: more than hol_chains_set_memory_limit allows; the message names the molecule).
  *         On an error nothing is added. Not thread-safe on one handle. O(n_bonds). Since 0.2.
@@ -271,7 +280,9 @@ HOL_API int hol_chains_add_molecules(hol_chains *chains, int64_t n_molecules, in
  * @param[in]     lengths   [n_bonds], as in hol_chains_add. May be NULL if n_bonds is 0. Copied.
  *
  * Bodies are taken as thin as they are: three atoms on a line to 1e-8 of its length are linear. A site must lie on the
- * line of a linear body and in the plane of a planar one. A bond within a body is satisfied by it: its multiplier is 0.
+ * line of a linear body. Off the plane of a planar one (the lone pairs of TIP5P) it is at its height along the normal,
+ * on the side on which it is in `places`, and can have no bond to atoms outside of its body (since 0.3). A bond within a body is satisfied by it: its multiplier is 0.
+ * Bodies may share atoms (since 0.2): one is a ball joint, two are a hinge.
  *
  * Molecules with bodies are numbered behind all others of the set, in the order of their first bodies; their bonds
  * stand in the arrays per bond in the order of the list, after those of earlier calls. All bonds of a molecule have to
@@ -282,7 +293,7 @@ HOL_API int hol_chains_add_molecules(hol_chains *chains, int64_t n_molecules, in
  * or molecules: HOL_ERR_UNSUPPORTED.
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (sizes; a length; a body without mass, with mass at one point, with a
  *         fixed atom, or with a site that it cannot carry; a bond within a body of another length; a bond in no
- * molecule with a body); HOL_ERR_INDEX; HOL_ERR_SHARED_ATOM (an atom in two bodies or in a molecule of an earlier
+ * molecule with a body); HOL_ERR_INDEX; HOL_ERR_SHARED_ATOM (an atom twice in a body or in a molecule of an earlier
  * call); HOL_ERR_NOT_FINITE (places); HOL_ERR_DEGENERATE (a bond given twice, more bonds than freedoms);
  *         HOL_ERR_MEMORY. On an error nothing is added. Not thread-safe on one handle. Since 0.2.
  */
@@ -309,6 +320,35 @@ HOL_API int hol_chains_add_rigid_molecules(hol_chains *chains, int64_t n_molecul
                                            int64_t n_bodies, const int64_t *sizes, const int64_t *atoms,
                                            const double *places, int64_t n_bonds, const int64_t *pairs,
                                            const double *lengths);
+
+/**
+ * Adds linear relations among atoms, sum_i c_i r_i = 0 with constant c_i, and bonds of the molecules in which these
+ * are: a site by its base and coefficients (r_s = a r_1 + b r_2 + ..), atoms that are one point (1, -1), centroids and
+ * centres of mass of flexible groups that coincide. A relation is three equations, which have no coordinates in them:
+ * motions, forces and velocities that it forbids are taken away to rounding. docs/rigid.md.
+ * @param[in,out] chains
+ * @param[in] n_relations   >= 1
+ * @param[in] sizes         [n_relations], how many atoms each has, >= 2
+ * @param[in] atoms         [sum of sizes], the atoms of one relation after the other. An atom of mass 0 is a massless
+ *                          site, as in a body; one of infinite mass can be in no relation.
+ * @param[in] coefficients  [sum of sizes]; those of a relation add up to 0, so that nothing depends on the origin
+ * @param[in] n_bonds       >= 0; 0: relations alone
+ * @param[in] pairs         [n_bonds][2], bonds of the molecules that the relations make, or NULL
+ * @param[in] lengths       [n_bonds], as in hol_chains_add, or NULL. Copied.
+ *
+ * Relations that share atoms are of one molecule. All relations and bonds of a molecule have to be given in one call.
+ * Images are taken along the bonds, and else from each atom of a relation to the next. Molecules with relations are
+ * numbered and treated as those with bodies (hol_chains_add_rigid): G has all of the force, multipliers are those of
+ * bonds; each relation takes three degrees of freedom. The work grows with the third power of the atoms of a molecule
+ * that hang together by relations.
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (sizes, coefficients, a relation that follows from the others, masses of
+ * 0 whose places do not follow from others, a length, a bond in no molecule with a relation); HOL_ERR_INDEX;
+ *         HOL_ERR_SHARED_ATOM (an atom of an earlier call); HOL_ERR_DEGENERATE; HOL_ERR_MEMORY. On an error nothing is
+ *         added. Not thread-safe on one handle. Since 0.3.
+ */
+HOL_API int hol_chains_add_linear(hol_chains *chains, int64_t n_relations, const int64_t *sizes, const int64_t *atoms,
+                                  const double *coefficients, int64_t n_bonds, const int64_t *pairs,
+                                  const double *lengths);
 
 /**
  * New lengths for all bonds, without building the set again.
@@ -433,12 +473,15 @@ typedef enum hol_when HOL_IS_INT {
  * atoms moved by half the cell. With HOL_AT_START (default)
  *
  * - the first call returns HOL_ERR_LENGTHS and moves nothing if a bond of the reference is off by more than a tenth of
- *   its length or longer than half the box, or if a bond of the positions to be projected is more than 5 times as long
- *   as it should be. So does the first call after new molecules, after hol_chains_set_active, after lengths of more
- *   than 1.5 times or less than two thirds of those before, and after a box that differs by more than 2 per cent. It
- *   costs one pass over the bonds, once.
+ *   its length or longer than half the box, or if bonds across faces of the box are off by more than 1e-3 of their
+ *   length and three times as much as any inside (a box that is a hundredth off does that); HOL_ERR_NO_CONVERGENCE, and
+ * likewise moves nothing, if the reference fits but a bond of the positions to be projected is more than 5 times as
+ * long as it should be. So does the first call after new molecules, after hol_chains_set_active, after lengths of more
+ * than 1.5 times or less than two thirds of those before, and after a box that differs by more than 2 per cent. It
+ * costs one pass over the bonds, once.
  * - in every later call a molecule with a bond of more than 5 times its length in the positions to be projected is bad
- *   (HOL_ERR_LENGTHS): it is left as it is, all others are complete. That costs under 2 per cent of the call.
+ *   (HOL_ERR_NO_CONVERGENCE, as any step that is too long): it is left as it is, all others are complete. That costs
+ *   under 2 per cent of the call.
  *
  * HOL_ALWAYS makes calls 1.6 to 2 times as long, of every shape.
  *
@@ -504,7 +547,7 @@ HOL_API int hol_chains_set_outcomes(hol_chains *chains, int keep);
  *                         are solved directly. Of a bad molecule what it took as far as that is known, or 0. Or NULL
  *
  * An inactive molecule has HOL_OK and 0. Where positions or forces were refused before anything was done
- * (HOL_ERR_LENGTHS in the first step), all molecules that do not fit have that status.
+ * (in the first step, hol_chains_set_checks), all molecules that do not fit have that status.
  * @return HOL_OK; HOL_ERR_NULL (chains); HOL_ERR_STATE: the thread has made no such call since, it ended by a wrong
  *         argument or by HOL_ERR_MEMORY, molecules have been added after it, or this thread has called with another
  *         handle that keeps outcomes. Thread-safe on one handle. Since 0.2.
@@ -523,12 +566,12 @@ HOL_API int hol_chains_set_active(hol_chains *chains, const unsigned char *activ
 /**
  * Tolerance of hol_project_positions: a molecule is done when |d.d - a^2| / a^2 <= tolerance for each of its bonds.
  * @param[in,out] chains
- * @param[in] tolerance  > 0, or 0 for the default: the rounding of the coordinates, i.e. of the largest coordinate of
- *                       the molecule in the element type of the caller's positions.
- * A tolerance below what the coordinates can carry means the default. A loose one lets the energy drift, and saves
- * little: 1e-8 takes a fifth of the time off chains, trees and rings, and none off water and atoms with three others,
- * which are solved to the rounding at once (docs/recipes.md has a table). A molecule that is within the tolerance
- * already is left where it is.
+ * @param[in] tolerance  > 0 and < 1, or 0 for the default: the rounding of the coordinates, i.e. of the largest
+ * coordinate of the molecule in the element type of the caller's positions. A tolerance below what the coordinates can
+ * carry means the default. A loose one lets the energy drift, and saves little: 1e-8 takes a fifth of the time off
+ * chains, trees and rings, two fifths off frames of triangles, and none off water and atoms with three others, which
+ * are solved to the rounding at once (docs/recipes.md has a table). A molecule that is within the tolerance already is
+ * left where it is.
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE. Not thread-safe on one handle. Since 0.1.
  */
 HOL_API int hol_chains_set_tolerance(hol_chains *chains, double tolerance);
@@ -636,6 +679,45 @@ HOL_API int hol_chains_masses(const hol_chains *chains, double *masses);
  */
 HOL_API int hol_chains_box(const hol_chains *chains, hol_which_box which, double *box);
 
+/**
+ * What has been set, or is the default: the index base; hol_bodies; hol_when; threads; 1 or 0, whether outcomes are
+ * kept; the two tolerances and the bounds, 0 where that means a default. 0 if chains is NULL. Since 0.3.
+ */
+HOL_API int hol_chains_index_base(const hol_chains *chains);
+HOL_API int hol_chains_bodies(const hol_chains *chains);
+HOL_API int hol_chains_checks(const hol_chains *chains);
+HOL_API int hol_chains_threads(const hol_chains *chains);
+HOL_API int hol_chains_outcomes(const hol_chains *chains);
+HOL_API double hol_chains_tolerance(const hol_chains *chains);
+HOL_API double hol_chains_length_tolerance(const hol_chains *chains);
+HOL_API int hol_chains_max_iterations(const hol_chains *chains);
+HOL_API int64_t hol_chains_memory_limit(const hol_chains *chains);
+
+/**
+ * The rate of the box that was set.
+ * @param[in]  chains
+ * @param[out] L  [3][3], zeros if there is none
+ * @return HOL_OK; HOL_ERR_NULL. Since 0.3.
+ */
+HOL_API int hol_chains_box_rate(const hol_chains *chains, double *L);
+
+/**
+ * Which molecules are active.
+ * @param[in]  chains
+ * @param[out] active  [n_molecules], 1 or 0
+ * @return HOL_OK; HOL_ERR_NULL. Since 0.3.
+ */
+HOL_API int hol_chains_active(const hol_chains *chains, unsigned char *active);
+
+/**
+ * The labels that were set; of what has none its number, counted from the index base. Each output may be NULL.
+ * @param[in]  chains
+ * @param[out] atoms      [n_atoms]
+ * @param[out] molecules  [n_molecules]
+ * @return HOL_OK; HOL_ERR_NULL (chains). Since 0.3.
+ */
+HOL_API int hol_chains_labels(const hol_chains *chains, int64_t *atoms, int64_t *molecules);
+
 /** What became of a bond that was given. Values are never changed nor reused. Since 0.3. */
 typedef enum hol_role HOL_IS_INT {
     HOL_ROLE_OWN = 0,     /**< a constraint with a multiplier of its own */
@@ -679,22 +761,43 @@ HOL_API int64_t hol_chains_degrees_of_freedom(const hol_chains *chains, int dime
 /** Memory that the handle occupies, in bytes; 0 if chains is NULL. Since 0.1. */
 HOL_API int64_t hol_chains_memory(const hol_chains *chains);
 
-HOL_API int hol_chains_add_linear(hol_chains *chains, int64_t n_relations, const int64_t *sizes, const int64_t *atoms,
-                                  const double *coefficients, int64_t n_bonds, const int64_t *pairs,
-                                  const double *lengths);
+/**
+ * How far the lengths of distances that depend on each other have been adjusted (hol_chains_add_bonds): of a file's
+ * decimals, no places in space have quite these lengths.
+ * @param[in]  chains
+ * @param[out] largest  by which part of it the length has been changed that was changed most; 0 if none was
+ * @param[out] bond     its number, or NULL; -1 if no length was changed. hol_chains_molecules_of_bonds tells the
+ * molecule
+ * @return HOL_OK; HOL_ERR_NULL (chains or largest). Since 0.3.
+ */
 HOL_API int hol_chains_adjustment(const hol_chains *chains, double *largest, int64_t *bond);
+
+/**
+ * Which distances others imply (hol_chains_add_bonds): they are in no equation, and their multipliers are 0.
+ * @param[in]  chains
+ * @param[out] implied  [n_bonds], 1 or 0
+ * @return HOL_OK; HOL_ERR_NULL. Since 0.3.
+ */
 HOL_API int hol_chains_implied(const hol_chains *chains, unsigned char *implied);
 
 /**
  * Atoms of mass 0 that bonds tie to something rigid: to a body, or to an atom of a triangle of bonds. Each is held in
  * space, and its molecule with it. Where a massless site was meant, as M of TIP4P, it belongs into a body
- * (hol_chains_add_rigid). To be asked once after adding; nothing is wrong with a molecule that is to be tethered, and an
- * atom of infinite mass (hol_chains_create), which is held on purpose, is never named.
+ * (hol_chains_add_rigid). To be asked once after adding; nothing is wrong with a molecule that is to be tethered, and
+ * an atom of infinite mass (hol_chains_create), which is held on purpose, is never named.
  * @param[in]  chains
  * @param[out] held  [n_atoms], 1 or 0
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_MEMORY. O(n_atoms + n_bonds). Since 0.3.
  */
 HOL_API int hol_chains_held_sites(const hol_chains *chains, unsigned char *held);
+
+/**
+ * By which part of them lengths of distances that depend on each other may be adjusted, so that they are those of
+ * places in space; what misses these by more is refused when it is added. It holds for what is added later.
+ * @param[in,out] chains
+ * @param[in]     tolerance  0 .. 0.01; 1e-3 until it is set, 0: lengths must be right to rounding
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE. Not thread-safe on one handle. Since 0.3.
+ */
 HOL_API int hol_chains_set_length_tolerance(hol_chains *chains, double tolerance);
 
 /**

@@ -1,0 +1,80 @@
+! Linear relations among atoms, sum c_i r_i = 0: sites by a base, atoms that are one point, centroids. Each procedure takes
+! integers and reals of 32 or 64 bits.
+module holonomic_linear
+   use, intrinsic :: iso_c_binding, only: c_int64_t, c_loc, c_null_ptr, c_ptr
+   use, intrinsic :: iso_fortran_env, only: int32, int64, real32, real64
+   use holonomic_c, only: hol_chains_add_linear, HOL_ERR_VALUE
+   use holonomic_rigid, only: chain_set_rigid
+   use holonomic_status, only: decimal, failure, settle
+   implicit none
+   private
+   public :: chain_set_linear
+
+   type, extends(chain_set_rigid) :: chain_set_linear
+   contains
+      procedure, private :: add_linear_32_32, add_linear_32_64, add_linear_64_32, add_linear_64_64
+      ! add_linear(atoms, coefficients, [sizes], [bonds, lengths]): a relation among these atoms, whose coefficients add up
+      ! to 0; with sizes several, one after the other. bonds(2, n_bonds) are those of the molecules that relations make.
+      generic :: add_linear => add_linear_32_32, add_linear_32_64, add_linear_64_32, add_linear_64_64
+   end type
+
+contains
+
+#define INTEGERS 32
+#define REALS 32
+#define ADD_LINEAR add_linear_32_32
+#include "linear.inc"
+#define INTEGERS 32
+#define REALS 64
+#define ADD_LINEAR add_linear_32_64
+#include "linear.inc"
+#define INTEGERS 64
+#define REALS 32
+#define ADD_LINEAR add_linear_64_32
+#include "linear.inc"
+#define INTEGERS 64
+#define REALS 64
+#define ADD_LINEAR add_linear_64_64
+#include "linear.inc"
+
+   subroutine add_relations(self, atoms, coefficients, sizes, bonds, lengths, stat, errmsg)
+      class(chain_set_linear), intent(inout) :: self
+      integer(int64), intent(in), contiguous, target :: atoms(:)
+      real(real64), intent(in), contiguous, target :: coefficients(:)
+      integer(int64), intent(in), optional :: sizes(:)
+      integer(int64), intent(in), contiguous, optional, target :: bonds(:, :)
+      real(real64), intent(in), contiguous, optional, target :: lengths(:)
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      integer(int64), allocatable, target :: relations(:)
+      type(failure) :: problem
+      type(c_ptr) :: pairs, of_pairs
+      integer(c_int64_t) :: n_bonds
+      call problem%need_created(self%c_handle())
+      relations = [size(atoms, kind=int64)]
+      if (present(sizes)) relations = sizes
+      n_bonds = 0
+      pairs = c_null_ptr
+      of_pairs = c_null_ptr
+      if (size(coefficients) /= size(atoms) .or. sum(relations) /= size(atoms)) then
+         call problem%set(HOL_ERR_VALUE, decimal(size(coefficients, kind=c_int64_t))//" coefficients were given, and sizes "// &
+                          "that add up to "//decimal(sum(relations))//", for "// &
+                          decimal(size(atoms, kind=c_int64_t))//" atoms")
+      else if (present(bonds) .neqv. present(lengths)) then
+         call problem%set(HOL_ERR_VALUE, "bonds and lengths must be given together")
+      else if (present(bonds)) then
+         if (size(bonds, 1) /= 2 .or. size(bonds, 2) /= size(lengths)) then
+            call problem%set(HOL_ERR_VALUE, "bonds must be (2, "//decimal(size(lengths, kind=c_int64_t))//")")
+         else if (size(lengths) > 0) then
+            n_bonds = size(bonds, 2, c_int64_t)
+            pairs = c_loc(bonds)
+            of_pairs = c_loc(lengths)
+         end if
+      end if
+      if (problem%none()) &
+         call problem%ask(hol_chains_add_linear(self%c_handle(), size(relations, kind=c_int64_t), c_loc(relations), &
+                                                c_loc(atoms), c_loc(coefficients), n_bonds, pairs, of_pairs))
+      call settle(problem, "add_linear", stat, errmsg)
+   end subroutine
+
+end module
