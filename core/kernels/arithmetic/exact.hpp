@@ -3,11 +3,10 @@
 // and Knuth; see Ogita, Rump and Oishi, SIAM J. Sci. Comput. 26, 1955 (2005).
 #pragma once
 
+#include "core/kernels/arithmetic/thresholds.hpp"
 #include "core/kernels/arithmetic/vector3.hpp"
 
 namespace holonomic::HOL_ISA {
-
-constexpr double epsilon = 2.220446049250313e-16;
 
 template <class V>
 struct Pair {

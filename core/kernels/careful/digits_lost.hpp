@@ -4,12 +4,10 @@
 // been made of.
 #pragma once
 
+#include "core/kernels/arithmetic/thresholds.hpp"
 #include "core/kernels/careful/wide.hpp"
 
 namespace holonomic::HOL_ISA::careful {
-
-// Twice the precision leaves less than a few roundings of a double while no ratio is larger.
-constexpr double largest_loss = 0x1p46;
 
 HOL_INLINE bool is_too_large(double size, const Wide &sum) { return !is_fourfold && size > largest_loss * abs(sum.hi); }
 

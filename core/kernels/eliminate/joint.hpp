@@ -20,10 +20,6 @@ HOL_INLINE Joint careful_joint(const vec3 &d, const vec3 &low, const vec3 &d1, c
     return {dot_compensated(d, low, d1, low1), dot(c, c), dot(d1, d1)};
 }
 
-// As small_cosine in remainder.hpp; the error bound of chains of more than longest_lane bonds is twice as large, which
-// products that are rounded before they are added use up. One lane has no segments but on request.
-constexpr double segment_cosine = HOL_HAS_FMA && W > 1 ? 1.0 / 64 : 1.0 / 32;
-
 // Computes g anew where bonds are nearly orthogonal: of n joints, the first of which is that of bonds k and k + 1.
 HOL_NOINLINE void refine_joints(const Source &source, long k, Joint *j, long n) {
     for (long i = 0; i < n; ++i) {

@@ -2,15 +2,11 @@
 #pragma once
 
 #include "core/kernels/arithmetic/image.hpp"
+#include "core/kernels/arithmetic/thresholds.hpp"
 #include "core/kernels/arithmetic/vector3.hpp"
 #include "core/kernels/memory/block.hpp"
 
 namespace holonomic::HOL_ISA {
-
-// g = d . d' of nearly orthogonal bonds cancels. The loss shows if the right-hand sides of the two bonds differ by
-// orders of magnitude. Below this cosine g is computed anew from the coordinates: at a few in a hundred joints of a
-// coil.
-constexpr double small_cosine = 1.0 / 32;
 
 // The sign bit is set if |cos| is below that; X = q q' (1 - cos^2).
 HOL_INLINE vec not_orthogonal(vec g2, vec X, double cosine = small_cosine) {
@@ -85,9 +81,6 @@ HOL_INLINE vec spare(const Column &e, vec F1, double times) { return mul_sub(spl
 //  - else the chain needs compensated products of the unrounded bond vectors.
 // Each test is tried only if the cheaper one before it fails: a multiply-add, one more, then the exact form below
 // (docs/development/measurements.md).
-constexpr double least_remainder = 1.0 / 4;
-constexpr double joint_tolerance = 8;
-constexpr double spare_of_cross_products = 4 * joint_tolerance * joint_tolerance;
 
 // Exact form of the test, for the joints between the n + 1 bonds from D on. Joint i is at atom first + i; E is the
 // remainder before D[0].

@@ -13,6 +13,7 @@
 // (E, 1) and (a, c) are two solutions of one linear recursion, so that the fractions of the ordinary sweep do for both.
 #pragma once
 
+#include "core/kernels/arithmetic/thresholds.hpp"
 #include "core/kernels/eliminate/joint.hpp"
 #include "core/kernels/memory/cut.hpp"
 #include "core/kernels/memory/load.hpp"
@@ -251,7 +252,6 @@ HOL_NOINLINE void eliminate(const SegmentBlock &s, const Reader &in, const Separ
 // separator, say. Seen from the far end, c is a remainder E' as any other, and its error at most 2 eps sqrt(w_max q_s
 // c), q_s being the separator's. It is harmless where that is below join_tolerance sum, `sum` being what c is added to,
 // c itself included, or times `factor`. With equal masses c >= w q_s / n, which is enough.
-constexpr double join_tolerance = 8;
 HOL_INLINE bool is_doubtful_join(const Summary &s, int i, double S, double sum, double factor) {
     constexpr double most = join_tolerance * join_tolerance;
     return !(4 * s.a[i] * s.span[i] * s.c[i] <= most * S * S) ||

@@ -1,6 +1,7 @@
 // A block of molecules of one shape: what is known of their atoms and bonds while they are solved.
 #pragma once
 
+#include "core/kernels/arithmetic/thresholds.hpp"
 #include "core/kernels/arithmetic/vector3.hpp"
 #include "core/kernels/molecules/atoms/atoms.hpp"
 #include "core/kernels/molecules/image.hpp"
@@ -27,15 +28,6 @@ struct Inputs {
     const double *strain = nullptr;  // added to rates: arithmetic/vector3.hpp
 };
 
-// The error of a multiplier that is a small difference (siblings.hpp) may be so many times its scale, both in
-// roundings: no more than the 16 + sqrt(n) roundings of the scale that count as right
-// (tests/oracle/molecules/README.md) where a molecule is large.
-constexpr double most_cancelled = 64;
-HOL_INLINE double most_cancelled2(int32_t n_bonds) {
-    const double large = static_cast<double>(n_bonds);
-    return large > most_cancelled * most_cancelled ? large : most_cancelled * most_cancelled;
-}
-
 template <class V>
 struct Molecules {
     const Schedule &s;
@@ -61,6 +53,9 @@ HOL_INLINE MaskOf<V> ordinary_squares(const V &least, const V &largest, double m
     return less(largest, Width<V>::all(most)) & less(Width<V>::all(1 / most), least);
 }
 
+// Of large molecules all pivots and their reciprocals are below this, or their units are not ordinary: segments of arms
+// do products of six.
+constexpr double most_ordinary_pivot = 0x1p120;
 constexpr double most_of_three = most_ordinary_square * most_ordinary_square * most_ordinary_square;
 
 // A vector component by component: as a structure gcc copies it as memory (docs/development/trials.md).
@@ -104,10 +99,6 @@ HOL_INLINE void exact_bond(const Molecules<V> &x, int lane, int32_t place, Vecto
     unrounded_bond(*x.box, a, b, d, lo);
 }
 
-// g = d . d' of nearly orthogonal bonds cancels, which shows where one right-hand side is much larger than the other.
-// Below this cosine it is computed anew from the coordinates.
-constexpr double least_cosine = 1.0 / 32;
-
 template <class V>
 HOL_NOINLINE V dots_anew(const Molecules<V> &x, int32_t a, int32_t b, unsigned which, V g) {
     for (unsigned left = which; left; left &= left - 1) {
@@ -122,7 +113,7 @@ HOL_NOINLINE V dots_anew(const Molecules<V> &x, int32_t a, int32_t b, unsigned w
 
 template <class V>
 HOL_INLINE MaskOf<V> nearly_orthogonal(const V &g, const V &p, const V &q) {
-    return less(Width<V>::all(1 / (least_cosine * least_cosine)) * (g * g), p * q);
+    return less(Width<V>::all(1 / (small_cosine * small_cosine)) * (g * g), p * q);
 }
 
 // Returns d . d' of two bonds, by the rule above.

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "core/kernels/molecules/list/flat_linear.hpp"
-#include "core/kernels/molecules/proof.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 

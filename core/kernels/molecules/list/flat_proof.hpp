@@ -9,16 +9,12 @@
 // flat_refine.hpp corrects, or the careful solver.
 #pragma once
 
+#include "core/kernels/arithmetic/thresholds.hpp"
 #include "core/kernels/molecules/list/flat_factor.hpp"
 #include "core/kernels/molecules/list/flat_rates.hpp"
 #include "core/kernels/molecules/list/flat_residual.hpp"
-#include "core/kernels/molecules/proof.hpp"
 
 namespace holonomic::HOL_ISA::graph {
-
-// What is left of an equation is most often less than a third of the roundings of R, and where it is not it can be
-// solved for. Where R is beyond this, refinement is needed most often.
-constexpr double most_beyond = 30;
 
 template <class V>
 struct FlatProof {

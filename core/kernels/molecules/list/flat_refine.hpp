@@ -1,6 +1,7 @@
 // Corrects the multipliers of molecules along a list against the exact residual, with the factors that there are.
 #pragma once
 
+#include "core/kernels/arithmetic/thresholds.hpp"
 #include "core/kernels/molecules/list/flat_proof.hpp"
 #include "core/kernels/molecules/refine.hpp"
 
@@ -30,9 +31,6 @@ HOL_INLINE Pair<R> product_of(const Pair<R> &a, const Pair<R> &b) {
     const Pair<R> p = product_of(a.hi, b.hi);
     return {p.hi, multiply_add(a.hi, b.lo, multiply_add(a.lo, b.hi, p.lo))};
 }
-
-// A multiplier that is less of what meets at its bond's atoms is faint: residuals are right to some 2^-104 of that.
-constexpr double faint_part = 1.0 / (1LL << 54);
 
 template <class V>
 struct FlatRefine {

@@ -5,12 +5,10 @@
 #pragma once
 
 #include "core/kernels/arithmetic/log_sum.hpp"
+#include "core/kernels/arithmetic/thresholds.hpp"
 #include "core/kernels/molecules/blocks.hpp"
 
 namespace holonomic::HOL_ISA::graph {
-
-// The part of what it is subtracted from that a pivot and E must keep: its inverse is that many roundings off H.
-constexpr double least_kept = 1.0 / 12;
 
 // The force on a bond may be wrong by so many times its scale, in roundings, if all that it may be wrong by adds up.
 // That many count as right.

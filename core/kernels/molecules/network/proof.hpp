@@ -5,7 +5,6 @@
 
 #include "core/kernels/molecules/network/equations.hpp"
 #include "core/kernels/molecules/network/factor.hpp"
-#include "core/kernels/molecules/proof.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 
@@ -127,7 +126,7 @@ struct NetProof : NetEquations {
         return true;
     }
 
-    // What may be left of equations, of their terms: half of what counts as right (proof.hpp).
+    // What may be left of equations, of their terms: half of what counts as right (thresholds.hpp).
     double most_left() const { return 0.5 * epsilon * (16 + __builtin_sqrt(static_cast<double>(s.n_bonds))); }
     // What a rounding of the multipliers, or of the bonds, does to an equation, in roundings. tensions: of its two
     // atoms, times their inverse masses.

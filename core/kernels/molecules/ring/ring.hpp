@@ -7,15 +7,10 @@
 // p - 1 is the one *before* it.
 #pragma once
 
+#include "core/kernels/arithmetic/thresholds.hpp"
 #include "core/kernels/molecules/tree/joint.hpp"
 
 namespace holonomic::HOL_ISA::graph {
-
-// How many roundings of the diagonal elements may be taken off, of the 16 + sqrt(n) that count as right
-// (tests/oracle/molecules/README.md).
-HOL_INLINE double most_roundings(int32_t n_bonds) { return 0.8 * (16 + __builtin_sqrt(static_cast<double>(n_bonds))); }
-// What its pivots must keep of the diagonal elements, so that none is zero.
-constexpr double least_lowered_part = 1.0 / 1024;
 
 template <class V>
 struct Ring {

@@ -7,13 +7,11 @@
 // keep a sixteenth of what they are subtracted from. `slack` is negative where they don't.
 #pragma once
 
+#include "core/kernels/arithmetic/thresholds.hpp"
 #include "core/kernels/molecules/scratch.hpp"
 #include "core/kernels/molecules/tree/siblings.hpp"
 
 namespace holonomic::HOL_ISA::graph {
-
-// The part of a diagonal element that its pivot must keep.
-constexpr double least_part = 1.0 / 16;
 
 constexpr int pair_of(int a, int b) { return a * (a - 1) / 2 + b; }  // a > b
 

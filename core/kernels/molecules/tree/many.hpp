@@ -8,12 +8,10 @@
 // d_c, which S^-1 subtracts from 1, enough is missing. `slack` is negative where it does not.
 #pragma once
 
+#include "core/kernels/arithmetic/thresholds.hpp"
 #include "core/kernels/molecules/molecules.hpp"
 
 namespace holonomic::HOL_ISA::graph {
-
-// tr M tr N is 9 where M is a multiple of 1.
-constexpr double most_uneven = 128, even = 9;
 
 // What is kept of such an atom: w N, then what siblings.hpp needs.
 enum KeptOfMany { of_pulls = 6, of_rounding = 7 };

@@ -3,6 +3,7 @@
 // opposite to the atom of its name.
 #pragma once
 
+#include "core/kernels/arithmetic/thresholds.hpp"
 #include "core/kernels/molecules/atoms/consecutive.hpp"
 #include "core/kernels/molecules/image.hpp"
 #include "core/kernels/molecules/molecules.hpp"
@@ -74,11 +75,6 @@ HOL_INLINE TriangleInverse<V> invert_triangle(const TriangleMasses<V> &m, const 
     }
     return inverse;
 }
-
-// Below this sine squared the cross product of rounded bond vectors loses more than a digit.
-constexpr double least_sine2 = 1.0 / 64;
-// Three distances on a line can't be told from this (eps^2 for the coordinates' roundings would be 5e-32).
-constexpr double straight_sine2 = 1e-22;
 
 // Bond vectors and what they know of each other.
 template <class V>

@@ -1,6 +1,7 @@
 // Forces, given right-hand sides and velocities of triangles.
 #pragma once
 
+#include "core/kernels/arithmetic/thresholds.hpp"
 #include "core/kernels/molecules/store.hpp"
 #include "core/kernels/molecules/triangle/triangle.hpp"
 
@@ -39,10 +40,6 @@ HOL_INLINE void triangle_sides(const TriangleCall &call, const Atoms<V> &at, con
     }
     if (call.rhs) read_triangle_bonds(at, call.rhs, 0.5, y);
 }
-
-// An element of the inverse between two bonds is a difference: of two terms, of which so much may cancel that what
-// their roundings leave stays below those that count as right.
-constexpr double most_cancelled_there = 6;
 
 // The terms of the elements of bonds k and k + 1, in absolute values.
 template <class V>
