@@ -18,10 +18,9 @@ namespace {
 
 // Constraint forces may stand where forces stood, and nowhere else.
 inline void run(const hol_chains *chains, ForcesCall &call, double *virial) {
-    const std::int64_t n = chains->n_atoms();
-    need_apart(n, call.v, "v", call.r, "r");
-    need_apart(n, call.g, "g", call.r, "r");
-    need_apart(n, call.g, "g", call.v, "v");
+    need_apart(*chains, call.v, "v", call.r, "r");
+    need_apart(*chains, call.g, "g", call.r, "r");
+    need_apart(*chains, call.g, "g", call.v, "v");
     if (call.lambda && call.lambda == call.tension && chains->n_bonds() > 0) refuse_same("tension", "lambda");
     holonomic::forces(chains->chains, call, virial);
 }

@@ -20,7 +20,7 @@ int hol_metric(const hol_chains *chains, const double *r, double kT, double *log
         MetricCall call;
         call.r = packed_array(r);
         call.force = packed_array(force);
-        holonomic::need_apart(chains->n_atoms(), call.force, "force", call.r, "r");
+        holonomic::need_apart(*chains, call.force, "force", call.r, "r");
         call.kT = kT;
         call.log_det = log_det;
         call.log_det_z = log_det_z;
@@ -39,7 +39,7 @@ int hol_metric_view(const hol_chains *chains, const hol_const_view *r, double kT
         call.force = viewed_array(chains->n_atoms(), force, "force");
         const AtomArray *const all[] = {&call.r, &call.force};
         holonomic::check_dimensions(all, 2);
-        holonomic::need_apart(chains->n_atoms(), call.force, "force", call.r, "r");
+        holonomic::need_apart(*chains, call.force, "force", call.r, "r");
         call.kT = kT;
         call.log_det = log_det;
         call.log_det_z = log_det_z;

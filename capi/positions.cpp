@@ -60,8 +60,8 @@ private:
 
 inline void project(const hol_chains *chains, PositionsCall &call, const AtomArray *bonds, double *virial,
                     hol_report *report) {
-    holonomic::need_apart(chains->n_atoms(), call.v, "v", call.r, "r");
-    holonomic::need_apart(chains->n_atoms(), call.v, "v", call.r_ref, "r_ref");
+    holonomic::need_apart(*chains, call.v, "v", call.r, "r");
+    holonomic::need_apart(*chains, call.v, "v", call.r_ref, "r_ref");
     ReportTo found(report);
     Compared compared(chains->reference_error);
     holonomic::project_positions(chains->chains, call, bonds, virial, found.get(), &compared);

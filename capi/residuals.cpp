@@ -12,7 +12,7 @@ int hol_residuals(const hol_chains *chains, const double *r, const double *v, do
         need(chains, "chains");
         need(chains->n_atoms(), r, "r");
         const AtomArray ar = holonomic::packed_array(r), av = holonomic::packed_array(v);
-        holonomic::need_apart(chains->n_atoms(), av, "v", ar, "r");
+        holonomic::need_apart(*chains, av, "v", ar, "r");
         holonomic::residuals(chains->chains, ar, av, length, rate);
     });
 }
@@ -26,7 +26,7 @@ int hol_residuals_view(const hol_chains *chains, const hol_const_view *r, const 
                         av = holonomic::viewed_array(chains->n_atoms(), v, "v");
         const AtomArray *const all[] = {&ar, &av};
         holonomic::check_dimensions(all, 2);
-        holonomic::need_apart(chains->n_atoms(), av, "v", ar, "r");
+        holonomic::need_apart(*chains, av, "v", ar, "r");
         holonomic::residuals(chains->chains, ar, av, length, rate);
     });
 }

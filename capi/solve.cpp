@@ -18,7 +18,7 @@ int hol_solve(const hol_chains *chains, const double *r, const double *rhs, doub
         need(chains->n_atoms(), r, "r");
         need(chains->n_bonds(), rhs, "rhs");
         const AtomArray ar = packed_array(r), ag = packed_array(g);
-        holonomic::need_apart(chains->n_atoms(), ag, "g", ar, "r");
+        holonomic::need_apart(*chains, ag, "g", ar, "r");
         holonomic::solve(chains->chains, ar, rhs, lambda, ag, adds(mode), virial);
     });
 }
@@ -32,7 +32,7 @@ int hol_solve_view(const hol_chains *chains, const hol_const_view *r, const doub
         const AtomArray ar = viewed_array(chains->n_atoms(), r, "r"), ag = viewed_array(chains->n_atoms(), g, "g");
         const AtomArray *const all[] = {&ar, &ag};
         holonomic::check_dimensions(all, 2);
-        holonomic::need_apart(chains->n_atoms(), ag, "g", ar, "r");
+        holonomic::need_apart(*chains, ag, "g", ar, "r");
         holonomic::solve(chains->chains, ar, rhs, lambda, ag, adds(mode), virial);
     });
 }

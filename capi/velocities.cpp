@@ -16,7 +16,7 @@ int hol_project_velocities(const hol_chains *chains, const double *r, double *v,
         VelocitiesCall call;
         call.r = holonomic::packed_array(r);
         call.v = holonomic::packed_array(v);
-        holonomic::need_apart(chains->n_atoms(), call.v, "v", call.r, "r");
+        holonomic::need_apart(*chains, call.v, "v", call.r, "r");
         call.lambda = lambda;
         holonomic::project_velocities(chains->chains, call, virial);
     });
@@ -33,7 +33,7 @@ int hol_project_velocities_view(const hol_chains *chains, const hol_const_view *
         call.v = holonomic::viewed_array(chains->n_atoms(), v, "v");
         const AtomArray *const all[] = {&call.r, &call.v};
         holonomic::check_dimensions(all, 2);
-        holonomic::need_apart(chains->n_atoms(), call.v, "v", call.r, "r");
+        holonomic::need_apart(*chains, call.v, "v", call.r, "r");
         call.lambda = lambda;
         holonomic::project_velocities(chains->chains, call, virial);
     });

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "boundary.hpp"
 #include "core/caller/packed_array.hpp"
 #include "holonomic.h"
 
@@ -28,11 +29,12 @@ inline AtomArray viewed_array(std::int64_t count, const hol_view *view, const ch
     return viewed_array(count, &read, name);
 }
 
-// Throws Error where two arrays of `count` atoms, which can't be one, are: the one was given in the other's place.
+// Throws Error where two arrays that can't be one are: the one was given in the other's place. Of no molecules nothing
+// is read.
 [[noreturn]] void refuse_same(const char *name, const char *other);
-inline void need_apart(std::int64_t count, const AtomArray &a, const char *name, const AtomArray &b,
+inline void need_apart(const hol_chains &of, const AtomArray &a, const char *name, const AtomArray &b,
                        const char *other) {
-    if (a.x && a.x == b.x && count > 0) refuse_same(name, other);
+    if (a.x && a.x == b.x && of.chains.n_molecules() > 0) refuse_same(name, other);
 }
 
 // All views of a call that are there have z, or none has.

@@ -21,7 +21,7 @@ int hol_violation(const hol_chains *chains, const double *r, const double *v, ho
         need(chains->n_atoms(), r, "r");
         need(worst, "worst");
         const AtomArray ar = holonomic::packed_array(r), av = holonomic::packed_array(v);
-        holonomic::need_apart(chains->n_atoms(), av, "v", ar, "r");
+        holonomic::need_apart(*chains, av, "v", ar, "r");
         holonomic::Worst found;
         holonomic::violation(chains->chains, ar, av, &found);
         write(worst, found);
@@ -37,7 +37,7 @@ int hol_violation_view(const hol_chains *chains, const hol_const_view *r, const 
                         av = holonomic::viewed_array(chains->n_atoms(), v, "v");
         const AtomArray *const all[] = {&ar, &av};
         holonomic::check_dimensions(all, 2);
-        holonomic::need_apart(chains->n_atoms(), av, "v", ar, "r");
+        holonomic::need_apart(*chains, av, "v", ar, "r");
         holonomic::Worst found;
         holonomic::violation(chains->chains, ar, av, &found);
         write(worst, found);

@@ -61,8 +61,8 @@ void check_cut(const Chains &chains, const AtomArray &r, const Box &box, const c
     if (!is_of_another_box(cut.off, inside.off, inside.n)) return;
     const Molecule m = chains.molecule(cut.molecule);
     Error error = make_error(Status::lengths,
-                             "molecule %s, %s: %.6g long %s, it should be %.6g; a face of the box cuts it, and bonds "
-                             "inside are off by %.2g: hardly the box of these positions",
+                             "molecule %s, %s: %.6g long %s, it should be %.6g; a face of the box cuts it, others fit "
+                             "to %.0e: hardly the box of these positions",
                              chains.name_of_molecule(m.number).text, name_of_bond(chains, m, cut.bond).text, cut.length,
                              what, m.length(cut.bond), inside.off);
     error.chain = cut.molecule;

@@ -130,8 +130,8 @@ constexpr double most_of_another_box = 1.25;
 Error another_box(const Chains &chains, std::int64_t molecule, double off, double inside, const char *what) {
     const std::int64_t *const atoms = chains.bodies()->atoms(molecule - chains.n_chains());
     Error error = make_error(Status::lengths,
-                             "molecule %s: off by %.2g of its size %s; a face of the box cuts it, and molecules inside "
-                             "are off by %.2g: hardly the box of these positions",
+                             "molecule %s: off by %.2g of its size %s; a face of the box cuts it, others fit to "
+                             "%.0e: hardly the box of these positions",
                              chains.name_of_rigid(molecule, atoms[0]).text, off, what, std::max(inside, 0.0));
     error.chain = molecule;
     error.n_bad = 1;

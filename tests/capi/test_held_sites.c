@@ -80,22 +80,23 @@ static void anchors_and_what_is_held_on_purpose(void **state)
 static void a_hub(void **state)
 {
     (void)state;
-    enum { WATERS = 20000, ATOMS = 3 * WATERS + 1 };
-    double *const masses = malloc(sizeof *masses * ATOMS), *const lengths = malloc(sizeof *lengths * 4 * WATERS);
-    int64_t *const pairs = malloc(sizeof *pairs * 8 * WATERS);
-    unsigned char *const held = malloc(ATOMS);
-    for (int m = 0; m < WATERS; ++m) {
+    const int n = quick_run() ? 1000 : 20000, n_atoms = 3 * n + 1;
+    double *const masses = malloc(sizeof *masses * (size_t)n_atoms), *const lengths =
+                                                                         malloc(sizeof *lengths * 4 * (size_t)n);
+    int64_t *const pairs = malloc(sizeof *pairs * 8 * (size_t)n);
+    unsigned char *const held = malloc((size_t)n_atoms);
+    for (int m = 0; m < n; ++m) {
         const int64_t o = 2 + 3 * m, four[8] = {o, o + 1, o, o + 2, o + 1, o + 2, 1, o};
         memcpy(pairs + 8 * m, four, sizeof four);
         memcpy(lengths + 4 * m, (double[4]){oh, oh, hh, om}, 4 * sizeof *lengths);
     }
-    for (int i = 0; i < ATOMS; ++i) masses[i] = i > 0;
+    for (int i = 0; i < n_atoms; ++i) masses[i] = i > 0;
     hol_chains *chains;
-    CHECK(hol_chains_create(ATOMS, masses, &chains));
+    CHECK(hol_chains_create(n_atoms, masses, &chains));
     CHECK(hol_chains_set_index_base(chains, 1));
-    CHECK(hol_chains_add_bonds(chains, 4 * WATERS, pairs, lengths));
+    CHECK(hol_chains_add_bonds(chains, 4 * n, pairs, lengths));
     CHECK(hol_chains_held_sites(chains, held));
-    for (int i = 0; i < ATOMS; ++i) assert_int_equal(held[i], i == 0);
+    for (int i = 0; i < n_atoms; ++i) assert_int_equal(held[i], i == 0);
     hol_chains_destroy(chains);
     free(masses), free(lengths), free(pairs), free(held);
 }

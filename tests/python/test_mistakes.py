@@ -379,6 +379,13 @@ class Boxes(unittest.TestCase):
             molecules.checks = "never"
             molecules.project_positions(r, r + 0.0, 1)
 
+    def test_its_message_is_short(self):
+        molecules, r = self.cut(n=100000)
+        molecules.box = 9.4
+        with self.assertRaisesRegex(hol.LengthsError, "hardly the box") as caught:
+            molecules.project_positions(r, r + 0.0, 1)
+        self.assertLessEqual(len(str(caught.exception)), 240)
+
     def test_by_bodies_too(self):
         places = np.array([(0, 0, 0), (0.6, 0.8, 0), (0.6, -0.8, 0)])
         rng = np.random.default_rng(1)
