@@ -330,7 +330,9 @@ HOL_API int hol_chains_add_rigid_molecules(hol_chains *chains, int64_t n_molecul
  * @param[in] n_relations   >= 1
  * @param[in] sizes         [n_relations], how many atoms each has, >= 2
  * @param[in] atoms         [sum of sizes], the atoms of one relation after the other. An atom of mass 0 is a massless
- *                          site, as in a body; one of infinite mass can be in no relation.
+ *                          site, as in a body; one of infinite mass is held where the caller has it: a centre of mass is
+ *                          driven by moving the fixed atom that it is to be at, between r_ref and r, and by its
+ *                          velocity in v. Of accelerations it has none
  * @param[in] coefficients  [sum of sizes]; those of a relation add up to 0, so that nothing depends on the origin
  * @param[in] n_bonds       >= 0; 0: relations alone
  * @param[in] pairs         [n_bonds][2], bonds of the molecules that the relations make, or NULL

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -48,6 +49,11 @@ public:
     // sum c_i r_i = 0, and bonds of the molecules in which these are (rigid/linear.hpp).
     void add_linear(std::int64_t n_relations, const std::int64_t *sizes, const std::int64_t *atoms,
                     const double *coefficients, std::int64_t n_bonds, const std::int64_t *pairs, const double *lengths);
+    // The same for many copies.
+    void add_linear_molecules(std::int64_t count, std::int64_t n_atoms, std::int64_t first_atom,
+                              std::int64_t n_relations, const std::int64_t *sizes, const std::int64_t *atoms,
+                              const double *coefficients, std::int64_t n_bonds, const std::int64_t *pairs,
+                              const double *lengths);
     void add_molecules(std::int64_t n_molecules, std::int64_t n_atoms, std::int64_t first_atom, std::int64_t n_bonds,
                        const std::int64_t *pairs, const double *lengths);
 
@@ -194,6 +200,12 @@ private:
     // Throws Error, naming a bond of this length, if the box is narrower than twice that. lengths: those that molecules
     // are to have, in the caller's order, or null: as they are.
     void check_width(const Box &next, double longest, const double *lengths) const;
+    // What many copies of molecules ask: the first atom; whether a list is within one; all of them, each made by
+    // make(number) unless it is as the first one is.
+    std::int64_t check_copies(std::int64_t count, std::int64_t n_atoms, std::int64_t first_atom) const;
+    void check_of_molecule(const std::int64_t *list, std::int64_t n, std::int64_t n_atoms, bool bonds) const;
+    std::vector<rigid::Given> copies_of(std::int64_t count, std::int64_t n_atoms, std::int64_t n_bonds,
+                                        const std::function<std::vector<rigid::Given>(std::int64_t)> &make) const;
     std::vector<rigid::Given> sort_rigid(std::int64_t n_bodies, const std::int64_t *sizes, const std::int64_t *atoms,
                                          std::int64_t offset, const double *places, std::int64_t n_bonds,
                                          const std::int64_t *pairs, const double *lengths,

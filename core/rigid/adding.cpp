@@ -57,7 +57,9 @@ BodyName name_of_body(const Chains &chains, const rigid::Given &given, std::int6
     for (std::int64_t b = 0; b < body; ++b) first += at(given.sizes[at(b)]);
     const std::int32_t n = given.sizes[at(body)];
     BodyName name;
-    if (n == 2)
+    if (n == 1)
+        std::snprintf(name.text, sizeof name.text, "the part of atom %s", chains.name_of_atom(given.atoms[first]).text);
+    else if (n == 2)
         std::snprintf(name.text, sizeof name.text, "the body of atoms %s and %s",
                       chains.name_of_atom(given.atoms[first]).text, chains.name_of_atom(given.atoms[first + 1]).text);
     else
@@ -145,48 +147,66 @@ void Chains::add_rigid_molecules(std::int64_t count, std::int64_t n_atoms, std::
                                  const double *lengths) {
     const std::int64_t n_held = check_sizes(n_bodies, sizes, n_bonds, base);
     check_lengths(n_bonds, lengths, base);
-    const std::int64_t first = first_atom < base ? -1 : first_atom - base;
     if (count == 0 || (n_bodies == 0 && n_bonds == 0)) return;
+    const std::int64_t first = check_copies(count, n_atoms, first_atom);
+    check_memory(*this, count * (n_held + std::min(n_bonds, most)), bytes_of_body_atom);
+    check_of_molecule(atoms, n_held, n_atoms, false);
+    check_of_molecule(pairs, 2 * n_bonds, n_atoms, true);
+    commit_rigid(copies_of(count, n_atoms, n_bonds,
+                           [&](std::int64_t m) {
+                               return sort_rigid(n_bodies, sizes, atoms, first + m * n_atoms, places, n_bonds, pairs,
+                                                 lengths);
+                           }),
+                 count * n_bonds);
+}
+
+// The first atom, counted from 0. Throws Error.
+std::int64_t Chains::check_copies(std::int64_t count, std::int64_t n_atoms, std::int64_t first_atom) const {
+    const std::int64_t first = first_atom < base ? -1 : first_atom - base;
     if (count < 0 || n_atoms < 2)
         throw make_error(Status::value, "n_molecules is %lld and n_atoms %lld; they must be at least 0 and 2",
                          static_cast<long long>(count), static_cast<long long>(n_atoms));
-    if (first < 0 || first >= n_atoms_ || n_atoms > n_atoms_ || count > (n_atoms_ - first) / n_atoms)
+    if (count > 0 && (first < 0 || first >= n_atoms_ || n_atoms > n_atoms_ || count > (n_atoms_ - first) / n_atoms))
         fail(make_error(Status::index,
                         "%lld molecules of %lld atoms from atom %lld on reach outside the atoms %d .. %lld",
                         static_cast<long long>(count), static_cast<long long>(n_atoms),
                         static_cast<long long>(first_atom), base, number(n_atoms_ - 1, base)),
              base, -1, first);
-    const auto check = [&](const std::int64_t *list, std::int64_t n, bool bonds) {
-        for (std::int64_t e = 0; e < n; ++e)
-            if (list[e] < base || list[e] - base >= n_atoms)
-                fail(make_error(Status::index, "atom %lld of the molecule is outside %d .. %lld",
-                                static_cast<long long>(list[e]), base, number(n_atoms - 1, base)),
-                     base, bonds ? e / 2 : -1, -1);
-    };
-    check_memory(*this, count * (n_held + std::min(n_bonds, most)), bytes_of_body_atom);
-    check(atoms, n_held, false);
-    check(pairs, 2 * n_bonds, true);
+    return first;
+}
+
+void Chains::check_of_molecule(const std::int64_t *list, std::int64_t n, std::int64_t n_atoms, bool bonds) const {
+    for (std::int64_t e = 0; e < n; ++e)
+        if (list[e] < base || list[e] - base >= n_atoms)
+            fail(make_error(Status::index, "atom %lld of the molecule is outside %d .. %lld",
+                            static_cast<long long>(list[e]), base, number(n_atoms - 1, base)),
+                 base, bonds ? e / 2 : -1, -1);
+}
+
+std::vector<rigid::Given> Chains::copies_of(std::int64_t count, std::int64_t n_atoms, std::int64_t n_bonds,
+                                            const std::function<std::vector<rigid::Given>(std::int64_t)> &make) const {
     std::vector<rigid::Given> all;
     // Where masses are those of the first copy at the same places, the molecules are its own.
-    const std::vector<rigid::Given> model = sort_rigid(n_bodies, sizes, atoms, first, places, n_bonds, pairs, lengths);
+    const std::vector<rigid::Given> model = make(0);
     for (std::int64_t m = 0; m < count; ++m) {
         std::vector<rigid::Given> copy = model;
         bool alike = true;
         for (rigid::Given &given : copy)
             for (std::size_t i = 0; i < given.atoms.size(); ++i) {
                 std::int64_t &atom = given.atoms[i];
+                const bool was_infinite = masses_.infinite(atom);
                 atom += m * n_atoms;
                 const bool held = i >= at(given.n_movable);
-                alike = alike && masses_.mass(atom) == given.masses[i] &&
+                alike = alike && masses_.mass(atom) == given.masses[i] && masses_.infinite(atom) == was_infinite &&
                         (held ? !(bodies_ && bodies_->is_site(atom)) : !use_.used(atom) && !masses_.infinite(atom));
             }
-        if (!alike) copy = sort_rigid(n_bodies, sizes, atoms, first + m * n_atoms, places, n_bonds, pairs, lengths);
+        if (!alike) copy = make(m);
         for (rigid::Given &given : copy) {
             for (std::int64_t &bond : given.bond_numbers) bond += m * n_bonds;
             all.push_back(std::move(given));
         }
     }
-    commit_rigid(all, count * n_bonds);
+    return all;
 }
 
 // Where parts of the list depend, their molecules are added as bodies, or without what others imply, the others as

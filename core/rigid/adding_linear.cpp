@@ -35,46 +35,103 @@ void check(const rigid::LinearRelation &one, std::int64_t number, int base) {
 
 }  // namespace
 
-void Chains::add_linear(std::int64_t n_relations, const std::int64_t *sizes, const std::int64_t *atoms,
-                        const double *coefficients, std::int64_t n_bonds, const std::int64_t *pairs,
-                        const double *lengths) {
+namespace {
+
+// Relations as loose parts.
+struct RelatedParts {
+    std::vector<std::int64_t> sizes, atoms;
+    std::vector<double> places;
+    rigid::LooseParts parts;
+};
+
+// atoms: counted from the base, those of the first copy `first` further on. Throws Error.
+RelatedParts parts_of(const Chains &chains, const Masses &masses, std::int64_t n_atoms, std::int64_t first,
+                      std::int64_t n_relations, const std::int64_t *sizes, const std::int64_t *atoms,
+                      const double *coefficients, std::int64_t n_bonds, const double *lengths) {
+    const int base = chains.base;
     if (n_relations < 1)
         throw make_error(Status::value, "n_relations is %lld; it must be at least 1",
                          static_cast<long long>(n_relations));
-    check_lengths(n_bonds, lengths, base);
+    RelatedParts found;
     std::vector<rigid::LinearRelation> all;
-    double longest = 0;
-    for (std::int64_t k = 0; k < n_bonds; ++k) longest = std::max(longest, lengths[k]);
-    rigid::LooseParts parts;
     for (std::int64_t k = 0; k < n_relations; ++k) {
-        if (sizes[k] < 2 || sizes[k] > n_atoms_)
+        if (sizes[k] < 2 || sizes[k] > n_atoms)
             throw of_relation(k, base, "has fewer than two atoms, or more than there are");
-        all.push_back({{atoms, atoms + sizes[k]}, {coefficients, coefficients + sizes[k]}});
+        all.emplace_back();
+        check({{}, {coefficients, coefficients + sizes[k]}}, k, base);
+        std::vector<std::int64_t> held;
         for (std::int64_t a = 0; a < sizes[k]; ++a) {
-            if (atoms[a] < base || atoms[a] - base >= n_atoms_)
+            if (atoms[a] < base || atoms[a] - base >= n_atoms)
                 throw make_error(Status::index, "atom %lld of relation %lld is outside %d .. %lld",
                                  static_cast<long long>(atoms[a]), static_cast<long long>(k + base), base,
-                                 static_cast<long long>(n_atoms_ - 1 + base));
-            if (a > 0) parts.links.emplace_back(atoms[a], atoms[a - 1]);
+                                 static_cast<long long>(n_atoms - 1 + base));
+            rigid::LinearRelation &one = all.back();
+            if (masses.infinite(atoms[a] - base + first)) {
+                one.fixed.push_back(atoms[a]);
+                one.of_fixed.push_back(coefficients[a]);
+                continue;
+            }
+            if (!one.atoms.empty()) found.parts.links.emplace_back(atoms[a], one.atoms.back());
+            one.atoms.push_back(atoms[a]);
+            one.c.push_back(coefficients[a]);
         }
-        check(all.back(), k, base);
+        if (all.back().atoms.empty()) throw of_relation(k, base, "has no atom that can move");
+        for (const std::int64_t atom : all.back().fixed) found.parts.links.emplace_back(atom, all.back().atoms[0]);
         atoms += sizes[k];
         coefficients += sizes[k];
     }
     const rigid::Linear groups(all, 1e-10);
     if (groups.left_out() >= 0) throw of_relation(groups.left_out(), base, "follows from the others");
-    std::vector<std::int64_t> part_sizes, part_atoms;
+    double longest = 0;
+    for (std::int64_t k = 0; k < n_bonds; ++k) longest = std::max(longest, lengths[k]);
     for (std::size_t p = 0; p < groups.parts().size(); ++p) {
         const std::vector<std::int64_t> &its = groups.parts()[p];
-        part_sizes.push_back(static_cast<std::int64_t>(its.size()));
-        part_atoms.insert(part_atoms.end(), its.begin(), its.end());
-        parts.loose.push_back({groups.relations()[p], longest > 0 ? longest : 1});
+        found.sizes.push_back(static_cast<std::int64_t>(its.size()));
+        found.atoms.insert(found.atoms.end(), its.begin(), its.end());
+        found.parts.loose.push_back({groups.relations()[p], longest > 0 ? longest : 1, {}});
+        found.parts.fixed.push_back(groups.fixed()[p]);
     }
-    const std::vector<double> places(3 * part_atoms.size(), 0);
-    check_memory(*this, static_cast<std::int64_t>(part_atoms.size()) + n_bonds, bytes_of_body_atom);
-    commit_rigid(sort_rigid(static_cast<std::int64_t>(part_sizes.size()), part_sizes.data(), part_atoms.data(), 0,
-                            places.data(), n_bonds, pairs, lengths, &parts),
+    found.places.assign(3 * found.atoms.size(), 0);
+    return found;
+}
+
+}  // namespace
+
+void Chains::add_linear(std::int64_t n_relations, const std::int64_t *sizes, const std::int64_t *atoms,
+                        const double *coefficients, std::int64_t n_bonds, const std::int64_t *pairs,
+                        const double *lengths) {
+    check_lengths(n_bonds, lengths, base);
+    const RelatedParts its =
+        parts_of(*this, masses_, n_atoms_, 0, n_relations, sizes, atoms, coefficients, n_bonds, lengths);
+    check_memory(*this, static_cast<std::int64_t>(its.atoms.size()) + n_bonds, bytes_of_body_atom);
+    commit_rigid(sort_rigid(static_cast<std::int64_t>(its.sizes.size()), its.sizes.data(), its.atoms.data(), 0,
+                            its.places.data(), n_bonds, pairs, lengths, &its.parts),
                  n_bonds);
+}
+
+void Chains::add_linear_molecules(std::int64_t count, std::int64_t n_atoms, std::int64_t first_atom,
+                                  std::int64_t n_relations, const std::int64_t *sizes, const std::int64_t *atoms,
+                                  const double *coefficients, std::int64_t n_bonds, const std::int64_t *pairs,
+                                  const double *lengths) {
+    check_lengths(n_bonds, lengths, base);
+    const std::int64_t first = check_copies(count, n_atoms, first_atom);
+    if (count == 0) return;
+    check_of_molecule(pairs, 2 * n_bonds, n_atoms, true);
+    const RelatedParts its =
+        parts_of(*this, masses_, n_atoms, first, n_relations, sizes, atoms, coefficients, n_bonds, lengths);
+    check_memory(*this, count * (static_cast<std::int64_t>(its.atoms.size()) + n_bonds), bytes_of_body_atom);
+    commit_rigid(copies_of(count, n_atoms, n_bonds,
+                           [&](std::int64_t m) {
+                               const std::int64_t offset = first + m * n_atoms;
+                               const RelatedParts here = m == 0
+                                                             ? its
+                                                             : parts_of(*this, masses_, n_atoms, offset, n_relations,
+                                                                        sizes, atoms, coefficients, n_bonds, lengths);
+                               return sort_rigid(static_cast<std::int64_t>(here.sizes.size()), here.sizes.data(),
+                                                 here.atoms.data(), offset, here.places.data(), n_bonds, pairs, lengths,
+                                                 &here.parts);
+                           }),
+                 count * n_bonds);
 }
 
 // Linear groups as loose parts, behind the bodies; and what they imply. Bonds of length zero are relations.
@@ -102,7 +159,7 @@ rigid::LooseParts Chains::take_linear(const BondList &list, const double *length
         cliques.sizes.push_back(static_cast<std::int64_t>(atoms.size()));
         cliques.atoms.insert(cliques.atoms.end(), atoms.begin(), atoms.end());
         cliques.places.resize(cliques.places.size() + 3 * atoms.size(), 0);
-        parts.loose.push_back({groups.relations()[p], longest > 0 ? longest : 1});
+        parts.loose.push_back({groups.relations()[p], longest > 0 ? longest : 1, {}});
     }
     return parts;
 }

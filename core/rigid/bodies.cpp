@@ -60,6 +60,9 @@ std::vector<double> signature_of(const Given &given) {
         count(loose.relations.c.size());
         words.insert(words.end(), loose.relations.c.begin(), loose.relations.c.end());
         words.push_back(loose.extent);
+        count(loose.fixed.size());
+        words.insert(words.end(), loose.fixed.begin(), loose.fixed.end());
+        words.insert(words.end(), loose.relations.of_fixed.begin(), loose.relations.of_fixed.end());
     }
     count(given.hidden.size());
     for (const Bond &bond : given.hidden) words.insert(words.end(), {double(bond.i), double(bond.j), bond.length});
@@ -77,6 +80,7 @@ std::int32_t Bodies::find_body(std::int32_t n, const double *masses, const doubl
     for (std::int32_t a = 0; a < 3 * n; ++a) hash.take(place[a]);
     hash.take(relations.n_atoms);
     for (const double c : relations.c) hash.take(c);
+    for (const double c : relations.of_fixed) hash.take(c);
     const auto range = kind_of_hash_.equal_range(hash.value());
     for (auto found = range.first; found != range.second; ++found) {
         const Body &body = kinds_[at(found->second)];
@@ -84,6 +88,8 @@ std::int32_t Bodies::find_body(std::int32_t n, const double *masses, const doubl
             same_words(body.place.data(), place, 3 * at(n)) && body.is_rigid == is_rigid &&
             body.relations.c.size() == relations.c.size() &&
             same_words(body.relations.c.data(), relations.c.data(), relations.c.size()) &&
+            body.relations.of_fixed.size() == relations.of_fixed.size() &&
+            same_words(body.relations.of_fixed.data(), relations.of_fixed.data(), relations.of_fixed.size()) &&
             (is_rigid || body.extent == loose->extent))
             return found->second;
     }
@@ -120,7 +126,8 @@ std::int32_t Bodies::find_shape(const Given &given) {
             const std::int32_t body = find_body(given.sizes[b], given.masses.data() + shape.n_held,
                                                 given.place.data() + 3 * std::ptrdiff_t{shape.n_held},
                                                 given.loose.empty() ? nullptr : &given.loose[b]);
-            shape.parts.push_back({body, shape.n_held, 0});
+            shape.parts.push_back(
+                {body, shape.n_held, 0, given.loose.empty() ? std::vector<std::int32_t>() : given.loose[b].fixed});
         } catch (const BodyFault &fault) {
             const std::int32_t atom = fault.atom < 0 ? -1 : shape.n_held + fault.atom;
             throw Refusal{Refusal::of_body, {fault.cause, atom}, {}, static_cast<std::int64_t>(b)};
@@ -174,7 +181,7 @@ Given Bodies::given(std::int64_t molecule) const {
         const Body &kind = body(part);
         given.sizes.push_back(kind.n_atoms);
         given.place.insert(given.place.end(), kind.place.begin(), kind.place.end());
-        given.loose.push_back({kind.relations, kind.is_rigid ? 0 : kind.extent});
+        given.loose.push_back({kind.relations, kind.is_rigid ? 0 : kind.extent, part.fixed});
     }
     if (std::all_of(given.loose.begin(), given.loose.end(), [](const Loose &loose) { return loose.is_rigid(); }))
         given.loose.clear();

@@ -14,6 +14,7 @@ namespace holonomic::rigid {
 struct Loose {
     Relations relations;
     double extent = 0;
+    std::vector<std::int32_t> fixed;  // atoms of the molecule, as the relations have them
     bool is_rigid() const { return relations.n_atoms == 0; }
 };
 

@@ -237,10 +237,10 @@ Body make_body(std::int32_t n, const double *masses, const double *place) {
 }
 
 std::int64_t Body::bytes() const {
-    return static_cast<std::int64_t>((masses.capacity() + place.capacity() + weights.capacity() + height.capacity()) *
-                                         sizeof(double) +
-                                     (y.capacity() + z.capacity() + share.capacity()) * sizeof(DoublePair) +
-                                     relations.c.capacity() * sizeof(double) + sizeof *this);
+    return static_cast<std::int64_t>(
+        (masses.capacity() + place.capacity() + weights.capacity() + height.capacity()) * sizeof(double) +
+        (y.capacity() + z.capacity() + first.capacity() + of_fixed.capacity() + share.capacity()) * sizeof(DoublePair) +
+        (relations.c.capacity() + relations.of_fixed.capacity()) * sizeof(double) + sizeof *this);
 }
 
 const char *fault_in_words(BodyFault::Cause cause) {
@@ -261,6 +261,8 @@ const char *fault_in_words(BodyFault::Cause cause) {
             return "has a linear relation that follows from the others";
         case BodyFault::undetermined:
             return "has massless atoms whose places do not follow from those of atoms with mass";
+        case BodyFault::held:
+            return "has linear relations with fixed atoms that leave nothing of it free";
         default:
             return "has an atom so light that the others alone determine its motion, and off their line or plane";
     }

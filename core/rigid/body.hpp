@@ -13,6 +13,11 @@
 //
 // Atoms between which linear relations hold, and nothing else, are a *loose* part: c and vectors u_p with other y, of
 // the same sums, as many as the relations leave free; no products of them are held. Distances between its atoms may be.
+// Where relations have fixed atoms r_f a part is not free to shift:
+//
+//     r_a = y_a0 u_0 + sum_p y_ap u_p + sum_j of_fixed_aj r_fj,    sum_a m_a y_ap of_fixed_aj = 0,
+//
+// with u_0 in place of the centre.
 #pragma once
 
 #include <cstdint>
@@ -35,20 +40,22 @@ struct Body {
     Relations relations;            // of a loose part
     std::vector<double> masses;     // [n_atoms], 0: a massless site
     std::vector<double> place;      // [n_atoms][3] the reference coordinates as they were given
-    bool is_thick;                  // plain doubles do: neither thin nor with atoms far out for their mass
-    std::vector<DoublePair> y;      // [n_atoms][rank]
-    std::vector<DoublePair> z;      // [n_atoms] of a site off the plane: + z u_1 x u_2; or empty: there is none
-    std::vector<double> height;     // the same over unit axes, rounded
-    std::vector<DoublePair> share;  // [n_atoms][1 + rank]: m/M, m y_p / M
-    std::vector<double> weights;    // [2][n_atoms][1 + rank] of a thick one: places and shares as BodyKind has them
-    double excess[4][4];            // as in BodyKind
+    std::vector<DoublePair> first;  // [n_atoms] of a loose part with fixed atoms: y_a0; else empty: 1
+    std::vector<DoublePair> of_fixed;  // [n_atoms][relations.n_fixed]
+    bool is_thick;                     // plain doubles do: neither thin nor with atoms far out for their mass
+    std::vector<DoublePair> y;         // [n_atoms][rank]
+    std::vector<DoublePair> z;         // [n_atoms] of a site off the plane: + z u_1 x u_2; or empty: there is none
+    std::vector<double> height;        // the same over unit axes, rounded
+    std::vector<DoublePair> share;     // [n_atoms][1 + rank]: m/M, m y_p / M
+    std::vector<double> weights;       // [2][n_atoms][1 + rank] of a thick one: places and shares as BodyKind has them
+    double excess[4][4];               // as in BodyKind
 
     std::int64_t bytes() const;
 };
 
 // What makes a body impossible; `atom` within it, -1 if it is none in particular.
 struct BodyFault {
-    enum Cause { no_mass, one_mass, one_point, not_finite, size, off_line, light, twice, undetermined } cause;
+    enum Cause { no_mass, one_mass, one_point, not_finite, size, off_line, light, twice, undetermined, held } cause;
     std::int32_t atom;
 };
 

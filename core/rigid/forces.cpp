@@ -64,6 +64,7 @@ void write(const System &system, const Place &place, const PairVector *z, const 
     }
     if (s.n_held == s.n_atoms) return;
     system.pulls(system.now, system.t, system.b);
+    if (f.x) system.pass_to_fixed(f, place, system.b);
     for (std::int32_t i = s.n_held; i < s.n_atoms; ++i)
         write_force(out, place.atoms[i], system.b[s.node_of[at(i)]], out.add || i >= s.n_movable);
 }

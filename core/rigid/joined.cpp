@@ -60,7 +60,7 @@ public:
         for (std::size_t p = 0; p < linear.parts().size(); ++p) {
             append(linear.parts()[p]);
             out_.places.resize(3 * out_.atoms.size(), 0);
-            out_.parts.loose.push_back({linear.relations()[p], extent_of(linear.parts()[p])});
+            out_.parts.loose.push_back({linear.relations()[p], extent_of(linear.parts()[p]), {}});
         }
         hold(joined, linear);
         return std::move(out_);

@@ -117,7 +117,17 @@ Linear::Linear(const std::vector<LinearRelation> &all, double least) {
         const std::vector<std::int64_t> &its = relations_of_part[entry.first];
         Relations given;
         given.n_atoms = static_cast<std::int32_t>(atoms.size());
+        std::vector<std::int64_t> fixed;
+        for (const std::int64_t k : its) fixed.insert(fixed.end(), all[at(k)].fixed.begin(), all[at(k)].fixed.end());
+        std::sort(fixed.begin(), fixed.end());
+        fixed.erase(std::unique(fixed.begin(), fixed.end()), fixed.end());
+        given.n_fixed = static_cast<std::int32_t>(fixed.size());
         for (const std::int64_t k : its) {
+            std::vector<double> held(fixed.size(), 0);
+            for (std::size_t j = 0; j < all[at(k)].fixed.size(); ++j)
+                held[at(std::lower_bound(fixed.begin(), fixed.end(), all[at(k)].fixed[j]) - fixed.begin())] +=
+                    all[at(k)].of_fixed[j];
+            given.of_fixed.insert(given.of_fixed.end(), held.begin(), held.end());
             std::vector<double> row(atoms.size(), 0);
             for (std::size_t i = 0; i < all[at(k)].atoms.size(); ++i)
                 row[at(std::lower_bound(atoms.begin(), atoms.end(), all[at(k)].atoms[i]) - atoms.begin())] +=
@@ -127,9 +137,13 @@ Linear::Linear(const std::vector<LinearRelation> &all, double least) {
         Leaders leaders = leaders_of(given, least);
         Relations kept;
         kept.n_atoms = given.n_atoms;
-        for (std::int32_t k = 0; k < given.count(); ++k)
-            if (std::count(leaders.left_out.begin(), leaders.left_out.end(), k) == 0)
-                kept.c.insert(kept.c.end(), given.row(k), given.row(k) + given.n_atoms);
+        kept.n_fixed = given.n_fixed;
+        for (std::int32_t k = 0; k < given.count(); ++k) {
+            if (std::count(leaders.left_out.begin(), leaders.left_out.end(), k) > 0) continue;
+            kept.c.insert(kept.c.end(), given.row(k), given.row(k) + given.n_atoms);
+            for (std::int32_t j = 0; j < given.n_fixed; ++j) kept.of_fixed.push_back(given.fixed(k, j));
+        }
+        fixed_.push_back(std::move(fixed));
         if (!leaders.left_out.empty()) left_out_ = its[at(leaders.left_out[0])];
         for (std::size_t i = 0; i < atoms.size(); ++i)
             place_of_[atoms[i]] = {

@@ -25,6 +25,7 @@ struct LooseParts {
         double length;
     };
     std::vector<Loose> loose;
+    std::vector<std::vector<std::int64_t>> fixed;  // atoms that relations of each have; or empty: none has any
     std::vector<Distance> hidden;
     std::vector<std::pair<std::int64_t, std::int64_t>> links;
     std::vector<std::int64_t> held;  // bonds that bodies hold which are loose parts now, ascending
@@ -34,6 +35,8 @@ struct LooseParts {
 struct LinearRelation {
     std::vector<std::int64_t> atoms;
     std::vector<double> c;
+    std::vector<std::int64_t> fixed{};
+    std::vector<double> of_fixed{};
 };
 // Of the atoms of a group, by d + 1 of them that are far from each other, and from a line and a plane; those first.
 struct GroupRelations {
@@ -52,6 +55,7 @@ public:
     const std::vector<std::vector<std::int64_t>> &parts() const { return parts_; }  // atoms of each
     const std::vector<Relations> &relations() const { return relations_; }          // of each
     const std::vector<Leaders> &leaders() const { return leaders_; }                // of each
+    const std::vector<std::vector<std::int64_t>> &fixed() const { return fixed_; }  // atoms that they have
     // An atom's part, and its place in it; null if it is in none.
     struct Place {
         std::size_t part, atom;
@@ -65,7 +69,7 @@ public:
     std::int64_t left_out() const { return left_out_; }  // a relation that others imply; -1
 
 private:
-    std::vector<std::vector<std::int64_t>> parts_;
+    std::vector<std::vector<std::int64_t>> parts_, fixed_;
     std::vector<Relations> relations_;
     std::vector<Leaders> leaders_;
     std::unordered_map<std::int64_t, Place> place_of_;

@@ -17,9 +17,11 @@ public:
     Span(const double *masses, std::size_t n, const DoublePair &mass) : masses_(masses), n_(n), mass_(mass) {}
 
     using Vector = std::vector<DoublePair>;
-    std::vector<Vector> orthonormal(std::vector<Vector> all, std::size_t count) const {
+    // To those that begin, which are not returned.
+    std::vector<Vector> orthonormal(std::vector<Vector> all, std::size_t count,
+                                    const std::vector<Vector> &begin) const {
         std::vector<Vector> found;
-        take_away(all, Vector(n_, as_pair(1)));
+        for (const Vector &other : begin) take_away(all, other);
         while (found.size() < count) {
             const auto longest = std::max_element(all.begin(), all.end(), [this](const Vector &a, const Vector &b) {
                 return product(a, a).hi < product(b, b).hi;
@@ -28,7 +30,7 @@ public:
             all.erase(longest);
             for (int pass = 0; pass < 2; ++pass) {
                 std::vector<Vector> alone{std::move(next)};
-                take_away(alone, Vector(n_, as_pair(1)));
+                for (const Vector &other : begin) take_away(alone, other);
                 for (const Vector &other : found) take_away(alone, other);
                 next = std::move(alone[0]);
             }
@@ -40,6 +42,13 @@ public:
             found.push_back(std::move(next));
         }
         return found;
+    }
+
+    // What masses do not see of it.
+    Vector rest(Vector vector, const std::vector<Vector> &of) const {
+        std::vector<Vector> alone{std::move(vector)};
+        for (const Vector &other : of) take_away(alone, other);
+        return std::move(alone[0]);
     }
 
 private:
@@ -89,15 +98,28 @@ Body make_loose(const double *masses, const Relations &relations, double extent)
     std::vector<Span::Vector> columns(count, Span::Vector(at(n)));
     for (std::size_t i = 0; i < at(n); ++i)
         for (std::size_t l = 0; l < count; ++l) columns[l][i] = leaders.of[i * count + l];
-    const std::vector<Span::Vector> y = Span(masses, at(n), mass).orthonormal(std::move(columns), count - 1);
-    if (y.size() + 1 < count) throw BodyFault{BodyFault::undetermined, -1};
-    body.rank = static_cast<std::int32_t>(y.size());
-    for (std::size_t i = 0; i < at(n); ++i) {
-        body.share.push_back(as_pair(masses[i]) / mass);
-        for (const Span::Vector &vector : y) {
-            body.y.push_back(vector[i]);
-            body.share.push_back((masses[i] * vector[i]) / mass);
+    const Span span(masses, at(n), mass);
+    std::vector<Span::Vector> y{Span::Vector(at(n), as_pair(1))};
+    const bool is_free = relations.n_fixed == 0;
+    if (!is_free) y.clear();
+    if (count == 0) throw BodyFault{BodyFault::held, -1};
+    for (Span::Vector &vector : span.orthonormal(std::move(columns), count - y.size(), y))
+        y.push_back(std::move(vector));
+    if (y.size() < count) throw BodyFault{BodyFault::undetermined, -1};
+    body.rank = static_cast<std::int32_t>(y.size()) - 1;
+    if (!is_free) body.first = y[0];
+    for (std::size_t i = 0; i < at(n); ++i)
+        for (std::size_t p = 0; p < y.size(); ++p) {
+            if (p > 0) body.y.push_back(y[p][i]);
+            body.share.push_back((masses[i] * y[p][i]) / mass);
         }
+    const std::size_t n_fixed = at(relations.n_fixed);
+    body.of_fixed.resize(at(n) * n_fixed);
+    for (std::size_t j = 0; j < n_fixed; ++j) {
+        Span::Vector follows(at(n));
+        for (std::size_t i = 0; i < at(n); ++i) follows[i] = leaders.of_fixed[i * n_fixed + j];
+        follows = span.rest(std::move(follows), y);
+        for (std::size_t i = 0; i < at(n); ++i) body.of_fixed[i * n_fixed + j] = follows[i];
     }
     return body;
 }

@@ -12,8 +12,12 @@ std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 class Elimination {
 public:
     explicit Elimination(const Relations &relations)
-        : n_(relations.n_atoms), rows_(at(relations.count())), row_of_(at(n_), -1) {
-        for (std::int32_t k = 0; k < relations.count(); ++k) take(relations.row(k), rows_[at(k)]);
+        : n_(relations.n_atoms), n_fixed_(relations.n_fixed), rows_(at(relations.count())), row_of_(at(n_), -1) {
+        for (std::int32_t k = 0; k < relations.count(); ++k) {
+            std::vector<double> c(relations.row(k), relations.row(k) + n_);
+            for (std::int32_t j = 0; j < n_fixed_; ++j) c.push_back(relations.fixed(k, j));
+            take(c, rows_[at(k)]);
+        }
     }
 
     Leaders run(double least) {
@@ -41,6 +45,9 @@ public:
         for (std::int32_t i = 0; i < n_; ++i)
             for (const std::int32_t leader : found.atoms)
                 found.of.push_back(row_of_[at(i)] < 0 ? as_pair(i == leader) : -rows_[at(row_of_[at(i)])][at(leader)]);
+        for (std::int32_t i = 0; i < n_; ++i)
+            for (std::size_t j = at(n_); j < at(n_ + n_fixed_); ++j)
+                found.of_fixed.push_back(row_of_[at(i)] < 0 ? as_pair(0) : -rows_[at(row_of_[at(i)])][j]);
         return found;
     }
 
@@ -48,12 +55,12 @@ private:
     using Row = std::vector<DoublePair>;
 
     // The largest coefficient 1, and a sum that is 0 to the last digit of pairs.
-    void take(const double *c, Row &row) const {
+    static void take(const std::vector<double> &c, Row &row) {
         std::size_t largest = 0;
-        for (std::size_t i = 0; i < at(n_); ++i)
+        for (std::size_t i = 0; i < c.size(); ++i)
             if (std::fabs(c[i]) > std::fabs(c[largest])) largest = i;
         DoublePair sum = as_pair(0);
-        for (std::size_t i = 0; i < at(n_); ++i) {
+        for (std::size_t i = 0; i < c.size(); ++i) {
             row.push_back(as_pair(c[i]) / as_pair(c[largest]));
             sum = sum + row.back();
         }
@@ -66,12 +73,12 @@ private:
         for (std::size_t k = 0; k < rows_.size(); ++k) {
             const DoublePair factor = rows_[k][column];
             if (k == row || factor.hi == 0) continue;
-            for (std::size_t i = 0; i < at(n_); ++i) rows_[k][i] = rows_[k][i] - factor * rows_[row][i];
+            for (std::size_t i = 0; i < rows_[k].size(); ++i) rows_[k][i] = rows_[k][i] - factor * rows_[row][i];
             rows_[k][column] = as_pair(0);
         }
     }
 
-    const std::int32_t n_;
+    const std::int32_t n_, n_fixed_;
     std::vector<Row> rows_;
     std::vector<std::int32_t> row_of_;  // of an atom that follows
 };

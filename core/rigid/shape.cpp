@@ -55,9 +55,12 @@ private:
         if (atom >= s_.n_held) return to.push_back({s_.node_of[at(atom)], -1, as_pair(sign)});
         const Part &part = s_.parts[at(s_.part_of[at(atom)])];
         const Body &body = body_of(part);
-        to.push_back({part.first_node, -1, as_pair(sign)});
+        const std::int32_t a = atom - part.first_atom;
+        to.push_back({part.first_node, -1, body.first.empty() ? as_pair(sign) : sign * body.first[at(a)]});
         for (std::int32_t p = 0; p < body.rank; ++p)
-            to.push_back({part.first_node + 1 + p, -1, sign * body.y[at((atom - part.first_atom) * body.rank + p)]});
+            to.push_back({part.first_node + 1 + p, -1, sign * body.y[at(a * body.rank + p)]});
+        for (std::size_t j = 0; j < part.fixed.size(); ++j)
+            to.push_back({s_.node_of[at(part.fixed[j])], -1, sign * body.of_fixed[at(a) * part.fixed.size() + j]});
     }
 
     void check_within(const Bond &bond, std::int32_t number) const {
@@ -98,7 +101,8 @@ private:
             for (std::size_t e = 0; e < half; ++e)
                 row.entries[e].factor = row.entries[e].factor + row.entries[half + e].factor;
             row.entries.erase(row.entries.begin() + static_cast<std::ptrdiff_t>(half), row.entries.end());
-            row.entries.erase(row.entries.begin());  // the centre
+            if (body_of(s_.parts[at(s_.part_of[at(bond.i)])]).first.empty())
+                row.entries.erase(row.entries.begin());  // the centre
             if (row.entries.empty()) throw Unsolvable{Unsolvable::too_many, number};
         }
         rows_.push_back(std::move(row));

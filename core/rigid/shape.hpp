@@ -17,6 +17,7 @@ namespace holonomic::rigid {
 struct Part {
     std::int32_t body;  // its kind
     std::int32_t first_atom, first_node;
+    std::vector<std::int32_t> fixed;  // atoms that its relations have
 };
 
 // A bond's length and the distance between its atoms in a body that was given by places: equal to what digits allow.

@@ -60,6 +60,8 @@ public:
         take_bodies();
         take_bonds();
         make_molecules(places);
+        fixed_.resize(molecules_.size());
+        if (parts_ && !parts_->fixed.empty()) add_fixed();
         add_bonds(lengths);
         if (parts_) add_distances();
         return std::move(molecules_);
@@ -200,7 +202,6 @@ private:
     }
 
     void add_bonds(const double *lengths) {
-        std::vector<std::unordered_map<std::int64_t, std::int32_t>> fixed(molecules_.size());
         for (const std::int64_t k : bonds_in_order()) {
             const auto [i, j] = std::minmax({end(k, 0), end(k, 1)});
             const std::int64_t of_first = molecule_of_atom(i);
@@ -212,13 +213,7 @@ private:
                     *next++ = found->second;
                     continue;
                 }
-                const auto known = fixed[m].find(atom);
-                if (known != fixed[m].end()) {
-                    *next++ = known->second;
-                    continue;
-                }
-                fixed[m].emplace(atom, append(given, atom));
-                *next++ = fixed[m].at(atom);
+                *next++ = fixed_atom(m, atom);
             }
             const bool held = parts_ && std::binary_search(parts_->held.begin(), parts_->held.end(), k);
             given.bonds.push_back({ends[0], ends[1], lengths[k], held ? rigid::held_elsewhere : -1});
@@ -226,19 +221,46 @@ private:
         }
     }
 
+    // The number of a fixed atom in a molecule.
+    std::int32_t fixed_atom(std::size_t molecule, std::int64_t atom) {
+        const auto known = fixed_[molecule].find(atom);
+        if (known != fixed_[molecule].end()) return known->second;
+        const std::int32_t local = append(molecules_[molecule], atom);
+        fixed_[molecule].emplace(atom, local);
+        return local;
+    }
+
+    // Those that relations have.
+    void add_fixed() {
+        std::vector<std::size_t> done(molecules_.size(), 0);
+        const std::int64_t *first = given_atoms_;
+        for (std::int64_t b = 0; b < n_bodies_; first += sizes_[b++]) {
+            const std::size_t m = at(molecule_of_atom(*first - base_ + offset_)), part = done[m]++;
+            for (const std::int64_t given : parts_->fixed[at(b)]) {
+                const std::int64_t atom = take(given, -1);
+                molecules_[m].loose[part].fixed.push_back(fixed_atom(m, atom));
+            }
+        }
+    }
+
     void add_distances() {
-        const auto local = [&](std::int64_t given) {
-            const auto found = local_.find(given - base_ + offset_);
-            return found == local_.end() ? -1 : found->second;
+        const auto local = [&](std::int64_t given, std::int64_t partner) {
+            const std::int64_t atom = given - base_ + offset_;
+            const auto found = local_.find(atom);
+            if (found != local_.end()) return found->second;
+            const std::int64_t m = molecule_of_atom(partner - base_ + offset_);
+            const bool is_held = m >= 0 && fixed_[at(m)].count(atom) > 0;
+            return is_held ? fixed_[at(m)].at(atom) : -1;
         };
         for (const auto &its : parts_->hidden) {
             rigid::Given &given = molecules_[at(molecule_of_atom(its.i - base_ + offset_))];
-            given.hidden.push_back({local(its.i), local(its.j), its.length, -1});
+            given.hidden.push_back({local(its.i, its.j), local(its.j, its.i), its.length, -1});
         }
         for (const auto &link : parts_->links) {
-            const std::int32_t i = local(link.first), j = local(link.second);
-            if (i >= 0 && j >= 0)
-                molecules_[at(molecule_of_atom(link.first - base_ + offset_))].links.push_back({i, j});
+            const std::int32_t i = local(link.first, link.second), j = local(link.second, link.first);
+            const std::int64_t first = molecule_of_atom(link.first - base_ + offset_),
+                               m = first >= 0 ? first : molecule_of_atom(link.second - base_ + offset_);
+            if (i >= 0 && j >= 0 && m >= 0) molecules_[at(m)].links.push_back({i, j});
         }
         for (rigid::Given &given : molecules_)
             if (std::all_of(given.loose.begin(), given.loose.end(), [](const auto &loose) { return loose.is_rigid(); }))
@@ -258,6 +280,7 @@ private:
     std::vector<std::int64_t> molecule_of_body_;
     std::unordered_map<std::int64_t, std::int32_t> local_;  // number of a movable atom within its molecule
     std::vector<rigid::Given> molecules_;
+    std::vector<std::unordered_map<std::int64_t, std::int32_t>> fixed_;  // of each molecule, their numbers in it
 };
 
 }  // namespace

@@ -200,7 +200,7 @@ void System::forces(const Conformation &where, const AtomArray &f, const Place &
         for (std::int32_t i = 0; i < its.n_atoms; ++i) {
             read_atom(f, place.atoms[part.first_atom + i], x);
             const PairVector of_atom = {as_pair(x[0]), as_pair(x[1]), as_pair(x[2])};
-            q[0] = q[0] + of_atom;
+            q[0] = q[0] + (its.first.empty() ? of_atom : its.first[at(i)] * of_atom);
             for (std::int32_t p = 0; p < its.rank; ++p) q[1 + p] = q[1 + p] + its.y[at(i * its.rank + p)] * of_atom;
         }
         if (!its.z.empty()) carry_to_axes(where, part, lifted_force(part, f, place), nodes);
@@ -211,13 +211,34 @@ void System::forces(const Conformation &where, const AtomArray &f, const Place &
     }
 }
 
+// The virtual work of forces where a fixed atom is shifted; that of the accelerations is 0.
+void System::pass_to_fixed(const AtomArray &f, const Place &place, PairVector *nodes) const {
+    for (const Part &part : s_.parts) {
+        const Body &its = body(part);
+        const std::size_t n_fixed = part.fixed.size();
+        for (std::int32_t i = 0; n_fixed > 0 && i < its.n_atoms; ++i) {
+            double x[3];
+            read_atom(f, place.atoms[part.first_atom + i], x);
+            const PairVector of_atom = {as_pair(x[0]), as_pair(x[1]), as_pair(x[2])};
+            for (std::size_t j = 0; j < n_fixed; ++j) {
+                PairVector &node = nodes[s_.node_of[at(part.fixed[j])]];
+                node = node + its.of_fixed[at(i) * n_fixed + j] * of_atom;
+            }
+        }
+    }
+}
+
 PairVector System::at_atom(const PairVector *nodes, std::int32_t atom) const {
     if (atom >= s_.n_held) return nodes[s_.node_of[at(atom)]];
     const Part &part = s_.parts[at(s_.part_of[at(atom)])];
     const Body &its = body(part);
     const DoublePair *const y = its.y.data() + (atom - part.first_atom) * its.rank;
+    const std::size_t i = at(atom - part.first_atom), n_fixed = part.fixed.size();
     PairVector sum = nodes[part.first_node];
+    if (!its.first.empty()) sum = its.first[i] * sum;
     for (std::int32_t p = 0; p < its.rank; ++p) sum = sum + y[p] * nodes[part.first_node + 1 + p];
+    for (std::size_t j = 0; j < n_fixed; ++j)
+        sum = sum + its.of_fixed[i * n_fixed + j] * nodes[s_.node_of[at(part.fixed[j])]];
     return sum;
 }
 

@@ -44,6 +44,8 @@ public:
     void velocities(const AtomArray &v, const Place &place, PairVector *nodes) const;
     // Nodes of forces, on the centre and the u_p; sites' too, where the molecule is.
     void forces(const Conformation &at, const AtomArray &f, const Place &place, PairVector *nodes) const;
+    // Adds to the nodes of fixed atoms what relations pass on to them.
+    void pass_to_fixed(const AtomArray &f, const Place &place, PairVector *nodes) const;
     // What a vector per node is at an atom; not at sites off the plane of a body, for which the next two are.
     PairVector at_atom(const PairVector *nodes, std::int32_t atom) const;
     PairVector place_of(const Conformation &at, std::int32_t atom) const;

@@ -273,13 +273,68 @@ class Linear(unittest.TestCase):
         for atoms, c, words in (([[0, 1]], [[1.0, 1.0]], "add up to 0"), ([[0, 1]], [[0.0, 0.0]], "but zeros"),
                                 ([[0, 1]], [[np.nan, 0.0]], "not finite"), ([[0, 7]], [[1.0, -1.0]], "outside"),
                                 ([[0, 1], [1, 0]], [[1.0, -1], [2, -2]], "follows from the others"),
-                                ([[0, 4]], [[1.0, -1.0]], "infinite mass"), ([[0]], [[0.0]], "fewer than two")):
+                                ([[0, 4]], [[1.0, -1.0]], "nothing of it free"), ([[0]], [[0.0]], "fewer than two")):
             with self.assertRaisesRegex(hol.Error, words):
                 molecules.add_linear(atoms, c)
         self.assertEqual(molecules.n_bonds, 0)
         molecules.add_linear([[0, 1]], [[1.0, -1.0]])
         with self.assertRaisesRegex(hol.Error, "earlier call"):
             molecules.add_linear([[1, 2]], [[1.0, -1.0]])
+
+    def test_a_centre_that_is_held_and_driven(self):
+        """The centre of mass of a chain at a fixed atom, which is then moved; a bond from a site to another fixed atom."""
+        rng = np.random.default_rng(14)
+        masses = np.array([1.0, 2, 3, 4, 5, np.inf, np.inf])
+        c = masses[:4] / 10
+        r = np.cumsum(rng.normal(size=(7, 3)), axis=0)
+        r[5] = (c @ r[:4])
+        r[4] = 0.3 * r[0] + 0.9 * r[1] - 0.2 * r[5]
+        pairs = [(0, 1), (1, 2), (4, 6), (2, 4)]
+        lengths = [np.linalg.norm(r[j] - r[i]) for i, j in pairs]
+        molecules = hol.Molecules(masses)
+        molecules.add_linear([[0, 1, 2, 3, 5], [0, 1, 5, 4]], [[*c, -1], [0.3, 0.9, -0.2, -1]], pairs, lengths)
+        self.assertEqual(molecules.degrees_of_freedom(), 15 - 6 - 4)
+        rows = np.zeros((10, 7, 3))
+        for x in range(3):
+            rows[x, [0, 1, 2, 3, 5], x] = [*c, -1]
+            rows[3 + x, [0, 1, 5, 4], x] = [0.3, 0.9, -0.2, -1]
+        for k, (i, j) in enumerate(pairs):
+            rows[6 + k, j], rows[6 + k, i] = r[j] - r[i], r[i] - r[j]
+        free, w = rows[:, :5].reshape(10, 15), np.repeat(1 / masses[:5], 3)
+        def multipliers(rhs):
+            return np.linalg.solve(free * w @ free.T, rhs)
+        v, f = rng.normal(size=(2, 7, 3))
+        # forces at rest; what holds the chain pulls the fixed atoms the other way
+        t = multipliers(free * w @ f[:5].ravel())
+        out = molecules.forces(r, np.zeros_like(r), f)
+        np.testing.assert_allclose(out.forces, -(t @ rows.reshape(10, 21)).reshape(7, 3), atol=1e-12)
+        np.testing.assert_allclose(out.forces.sum(0), 0, atol=1e-12)
+        np.testing.assert_allclose(out.virial, r.T @ out.forces, atol=1e-11)
+        # velocities follow those of fixed atoms
+        t = multipliers(rows.reshape(10, 21) @ v.ravel())
+        wanted = v.copy()
+        wanted[:5] -= (w * (free.T @ t)).reshape(5, 3)
+        molecules.project_velocities(r, v)
+        np.testing.assert_allclose(v, wanted, atol=1e-12)
+        # and so do positions
+        moved = r + 0.01 * v
+        molecules.project_positions(r, moved, 0.01, v)
+        np.testing.assert_allclose(moved[5], (r + 0.01 * wanted)[5], atol=1e-14)
+        np.testing.assert_allclose(c @ moved[:4], moved[5], atol=1e-14)
+        np.testing.assert_allclose(0.3 * moved[0] + 0.9 * moved[1] - 0.2 * moved[5], moved[4], atol=1e-14)
+        np.testing.assert_allclose([np.linalg.norm(moved[j] - moved[i]) for i, j in pairs], lengths, rtol=1e-14)
+        along = ((moved - r - 0.01 * wanted)[:5].ravel() / w) @ np.linalg.pinv(free) @ free  # along the reference's rows
+        np.testing.assert_allclose(along, (moved - r - 0.01 * wanted)[:5].ravel() / w, atol=1e-12)
+        molecules.set_masses(np.array([2.0, 2, 3, 4, 5, np.inf, np.inf]))
+        self.assertLess(np.abs(molecules.forces(r, None, f).forces.sum(0)).max(), 1e-12)
+
+    def test_fixed_atoms_that_leave_nothing_free(self):
+        molecules = hol.Molecules([1.0, 1.0, np.inf, np.inf])
+        for atoms, c, words in (([[0, 2]], [[1.0, -1.0]], "nothing of it free"), ([[2, 3]], [[1.0, -1.0]], "can move"),
+                                ([[0, 1, 2], [0, 1, 3]], [[0.5, 0.5, -1]] * 2, "follows from the others")):
+            with self.assertRaisesRegex(hol.Error, words):
+                molecules.add_linear(atoms, c)
+        self.assertEqual(molecules.n_molecules, 0)
 
     def test_copies_masses_and_boxes(self):
         rng = np.random.default_rng(12)

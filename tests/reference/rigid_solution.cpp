@@ -627,19 +627,12 @@ bool put_scales(const solver &of, const outcome &o, const real &unit, bool moved
         to.moved_scale.push_back(static_cast<long double>(z));
         to.g_scale.push_back(static_cast<long double>(g));
     }
-    // All nodes of a loose part are in all of its atoms, though what they are made of may be zero: roundings of twice
-    // the precision are allowed there.
-    const auto lift_to_largest = [](const std::vector<std::size_t> &which, std::vector<long double> &scale) {
-        long double most = 0;
-        for (const std::size_t i : which) most = std::max(most, scale[i]);
-        for (const std::size_t i : which) scale[i] = std::max(scale[i], 0x1p-40L * most);
-    };
-    for (const loose_part &part : of.p_.parts) {
-        std::vector<std::size_t> bonds(to.lambda_scale.size());
-        for (std::size_t k = 0; k < bonds.size(); ++k) bonds[k] = k;
-        lift_to_largest(part.atoms, to.g_scale);
-        lift_to_largest(part.atoms, to.moved_scale);
-        lift_to_largest(bonds, to.lambda_scale);
+    // All nodes of a loose part are in all of its atoms, and so in bonds at it, though what they are made of may be
+    // zero: roundings of twice the precision are allowed there.
+    for (std::vector<long double> *scale : {&to.g_scale, &to.moved_scale, &to.lambda_scale}) {
+        if (of.p_.parts.empty() || scale->empty()) continue;
+        const long double most = *std::max_element(scale->begin(), scale->end());
+        for (long double &each : *scale) each = std::max(each, 0x1p-40L * most);
     }
     const auto alike = [](long double a, long double b, long double scale) {
         const long double off = a < b ? b - a : a - b;

@@ -87,21 +87,17 @@ void check_lengths(const hostile_body &m, const numbers &r, molecule_verdict &ou
     }
 }
 
-/**
- * Of what depends on each other multipliers are not unique. Relations and lengths are those of the positions, whose
- * roundings count as the groups are flat: `slack` more.
- */
+/** Of what depends on each other multipliers are not unique. */
 void check_listed(const hostile_body &m, const rigid_solution &exact, const molecule_results &alone, long double k,
                   molecule_verdict &out)
 {
-    constexpr long double slack = 64;
-    if (alone.forces == HOL_OK) check_level(alone.g, exact.forces.g, exact.forces.g_scale, 3, slack * k, M_FORCE, out);
+    if (alone.forces == HOL_OK) check_level(alone.g, exact.forces.g, exact.forces.g_scale, 3, k, M_FORCE, out);
     if (alone.velocities == HOL_OK)
-        check_level(alone.v, exact.velocities.moved, exact.velocities.moved_scale, 3, slack * k, M_VELOCITY, out);
+        check_level(alone.v, exact.velocities.moved, exact.velocities.moved_scale, 3, k, M_VELOCITY, out);
     if (m.dt == 0) return;
     out.note(M_REFUSED_STEP, alone.positions != HOL_OK && exact.positions.there);
     if (alone.positions != HOL_OK || !exact.positions.there) return;
-    check_level(alone.r, exact.positions.moved, exact.positions.moved_scale, 3, slack * k, M_POSITION, out);
+    check_level(alone.r, exact.positions.moved, exact.positions.moved_scale, 3, k, M_POSITION, out);
 }
 
 /** What an atom may be: a site that is no atom of a body is there in no case. */
@@ -229,7 +225,6 @@ molecule_verdict check_alone(const hostile_body &m, const rigid_solution &exact,
     if (!facts.regular) return out;
     // Below what is promised an answer may be refused, but none may be wrong.
     const long double k = (16 + std::sqrt(static_cast<long double>(exact.n_constraints)) + thinness(m)) * eps;
-    // Of what depends multipliers are not unique, and relations are those of positions that are rounded.
     if (m.shape == LISTED) {
         out.note(M_REFUSED, hol_chains_degrees_of_freedom(a.chains.get(), 3) != m.freedoms);
         return check_listed(m, exact, alone, k, out), out;
@@ -260,6 +255,16 @@ molecule_verdict check_alone(const hostile_body &m, const rigid_solution &exact,
 namespace
 {
 
+/** Lists without bodies are ordinary molecules, which number their bonds in an order of their own, and have a metric
+ * where no other molecule of the set has bodies: these are left out. */
+molecule_results comparable(const hostile_body &m, molecule_results x)
+{
+    if (m.shape == LISTED)
+        for (numbers *of : {&x.lambda, &x.solved, &x.mu, &x.position_lambda, &x.fixman, &x.log_det, &x.log_det_z})
+            of->clear();
+    return x;
+}
+
 /** Units of mass, length and time that are 2^m, 2^l and 2^t of the old ones. `alone` was made with a step of 1. */
 void check_units(const hostile_body &c, molecule_results alone, int m, int l, int t, molecule_verdict &out)
 {
@@ -273,7 +278,7 @@ void check_units(const hostile_body &c, molecule_results alone, int m, int l, in
     other.dt = c.dt * time;
     placement a = place({&other}, 0);
     scale(a.rhs, 1 / (length * length));  // it was made from the lengths
-    molecule_results there = compute(a, time);
+    molecule_results there = comparable(c, compute(a, time));
     scale(there.lambda, length / force), scale(there.g, 1 / force);
     scale(there.solved, length * length / mass);
     scale(there.mu, length / (force * time));
@@ -292,7 +297,7 @@ void check_mirror(const hostile_body &c, molecule_results alone, molecule_verdic
     for (std::size_t b = 0; b < c.p.bodies.size(); ++b)
         if (!reference::facts_of_body(c.p, b).off_plane.empty())
             for (const std::size_t atom : c.p.bodies[b]) other.p.place[3 * atom] *= -1;
-    molecule_results there = compute(place({&other}, 0), 1);
+    molecule_results there = comparable(c, compute(place({&other}, 0), 1));
     for (numbers *x : {&there.g, &there.v, &there.r, &there.moved}) mirror(*x);
     without_signs_of_zeros(alone);
     without_signs_of_zeros(there);
@@ -322,15 +327,9 @@ void check_invariances(const std::vector<hostile_body> &molecules, std::uint64_t
     random_stream stream = random_seed(shuffle);
     for (std::size_t k = 0; k < parts.size(); ++k) {
         molecule_verdict &verdict = out[number[k]];
-        const auto compared = [&](molecule_results x) {
-            // Lists without bodies are ordinary molecules, which number their bonds in an order of their own.
-            if (parts[k]->shape == LISTED)
-                for (numbers *of_bonds : {&x.lambda, &x.solved, &x.mu, &x.position_lambda}) of_bonds->clear();
-            return x;
-        };
-        const molecule_results alone = compared(compute(place({parts[k]}, 0), 1));
+        const molecule_results alone = comparable(*parts[k], compute(place({parts[k]}, 0), 1));
         for (const molecule_results *other : {&first, &again, &views, &threads})
-            check_same(alone, compared(part_of(*other, together, k)), M_SAME_BITS, verdict);
+            check_same(alone, comparable(*parts[k], part_of(*other, together, k)), M_SAME_BITS, verdict);
         const auto exponent = [&] { return static_cast<int>(random_integer(&stream, -20, 20)); };
         const int m = exponent(), drawn = exponent(), t = exponent();
         const int l = parts[k]->shape == LISTED ? 0 : drawn;  // decimals are of one unit

@@ -38,17 +38,17 @@ public:
         }
         for (std::size_t i = 0; i < m_.p.r.size() / 3; ++i)
             m_.p.mass.push_back(m_.features & BODY_MASSES_APART ? d_.decades(-2, 2) : d_.uniform(1, 16));
-        const bool full = d_.chance(0.1);
         const double digits = std::pow(10.0, static_cast<double>(d_.whole(4, 9)));
         for (const auto &pair : m_.p.pairs) {
             const double length = distance(pair[0], pair[1]);
-            m_.listed.push_back(full ? length : std::round(length * digits) / digits);
+            m_.listed.push_back(full_ ? length : std::round(length * digits) / digits);
         }
     }
 
 private:
     hostile_body &m_;
     molecule_dice &d_;
+    const bool full_ = d_.chance(0.2);  // all digits
     std::set<std::size_t> centres_;
     std::vector<std::array<std::size_t, 2>> ends_;  // an atom of one bond, and its partner
 
@@ -93,11 +93,14 @@ private:
         point w;
         for (std::size_t x = 0; x < 3; ++x) w[x] = u[(x + 1) % 3] * v[(x + 2) % 3] - u[(x + 2) % 3] * v[(x + 1) % 3];
         const std::int64_t neighbours = kind == 0 ? 2 : kind == 1 ? 3 : kind == 2 ? 3 : 4;
-        const double polar = (kind == 1 ? 120 : 109.5) + d_.uniform(-4, 4), radian = std::acos(-1.0) / 180;
+        // Degrees by which a pyramid is not flat, which lengths with all digits tell; 0: many.
+        const double bend = kind == 2 && full_ && d_.chance(0.5) ? d_.decades(-3.2, 0.5) : 0;
+        const double polar = (kind == 1 || bend > 0 ? 120 : 109.5) + d_.uniform(-4, 4), radian = std::acos(-1.0) / 180;
         for (std::int64_t k = 0; k < neighbours; ++k) {
             if (k == 0 && before) continue;
-            const double turn =
-                kind == 1 ? 180 * static_cast<double>(k - 1) : 120 * static_cast<double>(k) + d_.uniform(-8, 8);
+            const double turn = kind == 1  ? 180 * static_cast<double>(k - 1)
+                                : bend > 0 ? 180 * static_cast<double>(k - 1) + (k == 1 ? bend : 0)
+                                           : 120 * static_cast<double>(k) + d_.uniform(-8, 8);
             const double angle = k == 0 ? 0 : kind == 0 ? 180 : polar + d_.uniform(-3, 3), length = d_.uniform(1, 1.6);
             const double c = kind == 0 && k > 0 ? -1 : std::cos(angle * radian),
                          s = kind == 0 || k == 0 ? 0 : std::sin(angle * radian);
