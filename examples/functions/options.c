@@ -21,7 +21,7 @@ int main(void)
     ok(hol_chains_set_max_iterations(chains, 20));
     ok(hol_chains_set_memory_limit(chains, 1 << 30)); /* what cycles may fill; 0: a quarter of the machine's */
     ok(hol_chains_set_active(chains, active));        /* the second chain is left out of every call */
-    shows("threads", hol_chains_threads(chains), 2); /* each option tells what it is */
+    shows("threads", hol_chains_threads(chains), 2);  /* each option tells what it is */
     shows("tolerance", hol_chains_tolerance(chains), 1e-10);
     shows("tolerance of lengths", hol_chains_length_tolerance(chains), 1e-3);
     shows("iterations", hol_chains_max_iterations(chains), 20);

@@ -41,6 +41,7 @@ SIGNATURES = {
     "hol_chains_set_reference_box": "i pp",
     "hol_chains_set_box_rate": "i pp",
     "hol_chains_set_labels": "i ppp",
+    "hol_chains_labels": "i ppp",
     "hol_chains_set_checks": "i pi",
     "hol_chains_set_threads": "i pi",
     "hol_chains_set_outcomes": "i pi",

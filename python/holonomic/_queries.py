@@ -126,6 +126,13 @@ class Queries(Bonds):
             raise ArgumentError(f"dimensions is {dimensions}; it must be 2 or 3")
         return count
 
+    @property
+    def labels(self) -> Tuple[np.ndarray, np.ndarray]:
+        """The labels of atoms (n_atoms,) and molecules (n_molecules,); of what has none its number."""
+        atoms, molecules = np.zeros(self._n_atoms, np.int64), np.zeros(self.n_molecules, np.int64)
+        ask(library.hol_chains_labels(self._handle, address(atoms), address(molecules)))
+        return atoms, molecules
+
     def set_labels(self, atoms: Optional[Integers] = None, molecules: Optional[Integers] = None) -> None:
         """Numbers by which you know atoms (n_atoms,) and molecules (n_molecules,): error messages show them."""
         lists = []

@@ -84,6 +84,73 @@ static void a_copy_is_changed_apart_and_gives_the_same(void **state)
 }
 
 /* Two handles in turns: each tells of its own reference. */
+/* Every setter has a question; the square is a body, the last molecule of a set that has chains, too. */
+static void what_was_set_can_be_asked(void **state)
+{
+    (void)state;
+    hol_chains *chains, *copy;
+    const double masses[9] = {1, 1, 1, 1, 2, INFINITY, 0, 3, 3};
+    const double lengths[8] = {side, side, side, side, diagonal, diagonal, 1.5, 3}, one = 1;
+    const double rate[9] = {0, 0.1, 0, 0, 0, 0, 0.3, 0, -0.1};
+    const int64_t pair[2] = {8, 9};
+    int64_t from_one[16], atoms[9], molecules[2], labels[9];
+    unsigned char active[2] = {1, 0}, found[2] = {7, 7};
+    double L[9];
+    for (int i = 0; i < 16; ++i) from_one[i] = pairs[i] + 1;
+    for (int i = 0; i < 9; ++i) labels[i] = 1000 + i;
+    CHECK(hol_chains_create(9, masses, &chains));
+    assert_int_equal(hol_chains_index_base(chains), 0);
+    assert_int_equal(hol_chains_bodies(chains), HOL_BODIES_FOUND);
+    assert_int_equal(hol_chains_checks(chains), HOL_AT_START);
+    assert_int_equal(hol_chains_threads(chains), 1);
+    assert_int_equal(hol_chains_outcomes(chains), 0);
+    assert_int_equal(hol_chains_max_iterations(chains), 50);
+    assert_int_equal(hol_chains_memory_limit(chains), 0);
+    assert_true(hol_chains_tolerance(chains) == 0 && hol_chains_length_tolerance(chains) == 1e-3);
+    CHECK(hol_chains_box_rate(chains, L));
+    for (int i = 0; i < 9; ++i) assert_true(L[i] == 0);
+    CHECK(hol_chains_set_index_base(chains, 1));
+    CHECK(hol_chains_set_length_tolerance(chains, 2e-3));
+    CHECK(hol_chains_add_bonds(chains, 8, from_one, lengths));
+    CHECK(hol_chains_add_bonds(chains, 1, pair, &one));
+    CHECK(hol_chains_active(chains, found));
+    assert_true(found[0] == 1 && found[1] == 1);
+    CHECK(hol_chains_labels(chains, atoms, molecules));
+    assert_true(atoms[0] == 1 && atoms[8] == 9 && molecules[0] == 1 && molecules[1] == 2);
+    CHECK(hol_chains_set_bodies(chains, HOL_BODIES_GIVEN));
+    CHECK(hol_chains_set_checks(chains, HOL_NEVER));
+    CHECK(hol_chains_set_threads(chains, 3));
+    CHECK(hol_chains_set_outcomes(chains, 1));
+    CHECK(hol_chains_set_max_iterations(chains, 7));
+    CHECK(hol_chains_set_memory_limit(chains, INT64_C(1) << 40));
+    CHECK(hol_chains_set_tolerance(chains, 1e-9));
+    CHECK(hol_chains_set_box_rate(chains, rate));
+    CHECK(hol_chains_set_active(chains, active));
+    CHECK(hol_chains_set_labels(chains, labels, NULL));
+    CHECK(hol_chains_copy(chains, &copy));
+    hol_chains_destroy(chains);
+    assert_int_equal(hol_chains_index_base(copy), 1);
+    assert_int_equal(hol_chains_bodies(copy), HOL_BODIES_GIVEN);
+    assert_int_equal(hol_chains_checks(copy), HOL_NEVER);
+    assert_int_equal(hol_chains_threads(copy), 3);
+    assert_int_equal(hol_chains_outcomes(copy), 1);
+    assert_int_equal(hol_chains_max_iterations(copy), 7);
+    assert_true(hol_chains_memory_limit(copy) == INT64_C(1) << 40);
+    assert_true(hol_chains_tolerance(copy) == 1e-9 && hol_chains_length_tolerance(copy) == 2e-3);
+    CHECK(hol_chains_box_rate(copy, L));
+    for (int i = 0; i < 9; ++i) assert_true(L[i] == rate[i]);
+    CHECK(hol_chains_active(copy, found));
+    assert_true(found[0] == 1 && found[1] == 0);
+    CHECK(hol_chains_labels(copy, atoms, molecules));
+    assert_true(memcmp(atoms, labels, sizeof atoms) == 0 && molecules[1] == 2);
+    CHECK(hol_chains_labels(copy, NULL, NULL));
+    CHECK_FAILS(HOL_ERR_NULL, hol_chains_active(copy, NULL));
+    CHECK_FAILS(HOL_ERR_NULL, hol_chains_box_rate(copy, NULL));
+    CHECK_FAILS(HOL_ERR_NULL, hol_chains_labels(NULL, atoms, NULL));
+    assert_true(hol_chains_threads(NULL) == 0 && hol_chains_tolerance(NULL) == 0 && hol_chains_index_base(NULL) == 0);
+    hol_chains_destroy(copy);
+}
+
 static void the_error_of_a_reference_is_that_of_its_handle(void **state)
 {
     (void)state;
@@ -140,6 +207,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_bond_has_a_role),
+        cmocka_unit_test(what_was_set_can_be_asked),
         cmocka_unit_test(bodies_of_distances_may_be_refused),
         cmocka_unit_test(a_copy_is_changed_apart_and_gives_the_same),
         cmocka_unit_test(the_error_of_a_reference_is_that_of_its_handle),

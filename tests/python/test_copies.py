@@ -99,6 +99,8 @@ class Sets(unittest.TestCase):
                 np.testing.assert_array_equal(getattr(other, name), getattr(molecules, name))
             for name in ("threads", "tolerance", "max_iterations", "memory_limit", "checks", "keep_outcomes"):
                 self.assertEqual(getattr(other, name), getattr(molecules, name))
+            np.testing.assert_array_equal(other.labels[0], np.arange(40) + 9000)
+            np.testing.assert_array_equal(other.labels[1], np.arange(molecules.n_molecules))
             r = np.zeros((40, 3))
             with self.assertRaisesRegex(hol.DegenerateError, "90"):
                 other.forces(r)

@@ -33,8 +33,9 @@ class Package(unittest.TestCase):
 
     def test_reaches_every_function(self):
         by_view = {name for name, _ in prototypes() if name + "_view" in _library.SIGNATURES}
-        # Python counts from 0, and offsets say less than `Molecule.bonds`.
-        left_out = {"hol_chains_set_index_base", "hol_chains_offsets"}
+        # Python counts from 0, offsets say less than `Molecule.bonds`, and arrays that were set come back as they were given.
+        left_out = {"hol_chains_set_index_base", "hol_chains_index_base", "hol_chains_offsets", "hol_chains_active",
+                    "hol_chains_box_rate"}
         self.assertEqual({name for name, _ in prototypes()} - by_view - left_out - set(_library.SIGNATURES), set())
 
     def test_has_the_version_of_the_library(self):

@@ -87,12 +87,30 @@ void keep_chains(const KeepCall &call, const Unit &unit, double *scratch, Tally 
     for_each_block(call, unit, scratch, tally, keep_block, keep_small_ones);
 }
 
-// Differences of a vector per atom along the bonds k0 .. k0 + W - 1, with inverse masses if there are `w`. Where a lane
-// may end, what is behind counts as zeros.
+// Where a chunk of W bonds of which the bonds k0 .. are wanted is read: at k0, or as much in front of it as lets it end
+// with its lanes, which end together; -1: neither is possible.
+HOL_INLINE long chunk_at(const Block &block, long k0) {
+    if (__builtin_expect(k0 + W <= block.n_min, 1)) return k0;
+    return block.n_min == block.n && block.n >= W ? block.n - W : -1;
+}
+
+// step(k, b) for the bonds k0 .. end - 1, of which bond k is number b in a chunk read from bond `from` on.
+template <class Step>
+HOL_INLINE void for_chunk(long k0, long end, long from, const Step &step) {
+    if (__builtin_expect(from == k0 && end == k0 + W, 1)) {
+        HOL_UNROLL
+        for (long b = 0; b < W; ++b) step(k0 + b, b);
+    } else {
+        for (long k = k0; k < end; ++k) step(k, k - (from < 0 ? k0 : from));
+    }
+}
+
+// Differences of a vector per atom along the bonds k0 .. k0 + W - 1, with inverse masses if there are `w`: out[0] is
+// that of bond `from`. Where a lane may end, what is behind counts as zeros.
 template <bool weigh>
-HOL_INLINE void differences(const Block &block, const Packed &x, const RowsOfLanes &rows, long k0, vec3 *out) {
-    if (__builtin_expect(k0 + W <= block.n_min, 1))
-        return subtract_chunk<false, weigh>(rows, k0, out, nullptr, block.w3);
+HOL_INLINE void differences(const Block &block, const Packed &x, const RowsOfLanes &rows, long from, long k0,
+                            vec3 *out) {
+    if (__builtin_expect(from >= 0, 1)) return subtract_chunk<false, weigh>(rows, from, out, nullptr, block.w3);
     for (int b = 0; b < W; ++b) out[b] = vec3{};
     for (int i = 0; i < block.lanes; ++i)
         for (long k = k0; k < k0 + W && k < block.len[i]; ++k)
@@ -110,16 +128,18 @@ HOL_NOINLINE mask substitute_sides(const Block &block, const System &s, const Pa
     const RowsOfLanes of_v(has_v ? v : f), of_f(has_f ? f : v);
     vec y = {}, size = {};
     for (long k0 = 0; k0 < block.n; k0 += W) {
-        vec3 dv[W] = {}, df[W] = {};
-        if (has_v) differences<false>(block, v, of_v, k0, dv);
-        if (has_f) differences<weigh>(block, f, of_f, k0, df);
+        vec3 dv[W], df[W];
+        const long from = chunk_at(block, k0);
+        if (has_v) differences<false>(block, v, of_v, from, k0, dv);
+        if (has_f) differences<weigh>(block, f, of_f, from, k0, df);
         const long end = k0 + W < block.n ? k0 + W : block.n;
-        for (long k = k0; k < end; ++k) {
-            y = mul_add(s.L[k], y, right_hand_side(terms, block.mass, s.D[k], dv[k - k0], df[k - k0]));
+        for_chunk(k0, end, from, [&](long k, long b) HOL_FORCED {
+            y = mul_add(s.L[k], y,
+                        right_hand_side(terms, block.mass, s.D[k], has_v ? dv[b] : vec3{}, has_f ? df[b] : vec3{}));
             const vec u = y * s.pivots[k];
             s.t[k] = u;
             size = size + abs(u);
-        }
+        });
     }
     return less(size, splat(largest_calm));
 }
@@ -153,6 +173,30 @@ HOL_NOINLINE mask substitute_listed(const Block &block, const System &s, const A
     return less(size, splat(largest_calm));
 }
 
+// The same of values per bond that are given.
+HOL_NOINLINE void substitute_given(const Block &block, const System &s, const double *rhs) {
+    const vec half = 0.5 * block.mass;
+    vec y = {};
+    for (long k0 = 0; k0 < block.n; k0 += W) {
+        vec b[W];
+        const long end = k0 + W < block.n ? k0 + W : block.n;
+        const long from = chunk_at(block, k0);
+        for (int i = block.lanes; i < W; ++i) b[i] = vec{};
+        if (__builtin_expect(from >= 0, 1)) {
+            for (int i = 0; i < block.lanes; ++i) b[i] = load(rhs + block.first_bond[i] + from);
+            transpose(b);
+        } else {
+            for (int i = 0; i < W; ++i) b[i] = vec{};
+            for (int i = 0; i < block.lanes; ++i)
+                for (long k = k0; k < end && k < block.len[i]; ++k) b[k - k0][i] = rhs[block.first_bond[i] + k];
+        }
+        for_chunk(k0, end, from, [&](long k, long i) HOL_FORCED {
+            y = mul_add(s.L[k], y, half * b[i]);
+            s.t[k] = y * s.pivots[k];
+        });
+    }
+}
+
 // Writes at once what the sweep down finds. Returns whether it is done; if not, nothing has been written.
 template <class Substitute, class Store>
 HOL_INLINE bool solve_at_once(const Block &block, const KeptCall &call, const double *from,
@@ -165,27 +209,6 @@ HOL_INLINE bool solve_at_once(const Block &block, const KeptCall &call, const do
     if (any(~calm)) return false;
     choose([&](auto add) { store(add); }, call.add);
     return true;
-}
-
-// The same of values per bond that are given.
-HOL_NOINLINE void substitute_given(const Block &block, const System &s, const double *rhs) {
-    const vec half = 0.5 * block.mass;
-    vec y = {};
-    for (long k0 = 0; k0 < block.n; k0 += W) {
-        vec b[W] = {};
-        const long end = k0 + W < block.n ? k0 + W : block.n;
-        if (k0 + W <= block.n_min) {
-            for (int i = 0; i < block.lanes; ++i) b[i] = load(rhs + block.first_bond[i] + k0);
-            transpose(b);
-        } else {
-            for (int i = 0; i < block.lanes; ++i)
-                for (long k = k0; k < end && k < block.len[i]; ++k) b[k - k0][i] = rhs[block.first_bond[i] + k];
-        }
-        for (long k = k0; k < end; ++k) {
-            y = mul_add(s.L[k], y, half * b[k - k0]);
-            s.t[k] = y * s.pivots[k];
-        }
-    }
 }
 
 // Of no forces and no velocities.

@@ -57,9 +57,7 @@ struct SolveTrees {
         const Box no_box = {};
         Linear<V> z(schedule, lane, used, true, no_box, call.g, memory);
         const V *const kept = factors_in<V>(const_cast<double *>(from));
-        V *const to = z.factors();
-        const int64_t n = z.n_factors();
-        for (int64_t i = 0; i < n; ++i) to[i] = kept[i];
+        __builtin_memcpy(z.factors(), kept, static_cast<unsigned long>(z.n_factors()) * sizeof(V));
         z.x.slack = Width<V>::all(1);
         const unsigned good = static_cast<unsigned>(from[0]) & solve_kept(z, call.v, call.f, call.rhs);
         leave(lane, bits(z.x.in_use()) & ~good, call.left);

@@ -8,13 +8,17 @@ void store_bonds(const Block &block, const vec *value, vec factor, mask which, d
     long k0 = first;
     double *to[W];
     for (int i = 0; i < W; ++i) to[i] = out + block.first_bond[i < block.lanes ? i : 0];
-    for (const long full = chosen == all_lanes ? block.n_min - W : -1; k0 <= full; k0 += W) {
+    const auto whole_chunk = [&](long k) HOL_FORCED {
         HOL_UNROLL
-        for (int b = 0; b < W; ++b) m[b] = mul_add(factor, value[k0 + b], vec{});
+        for (int b = 0; b < W; ++b) m[b] = mul_add(factor, value[k + b], vec{});
         transpose(m);
         HOL_UNROLL
-        for (int i = 0; i < W; ++i) store(to[i] + k0, m[i]);
-    }
+        for (int i = 0; i < W; ++i) store(to[i] + k, m[i]);
+    };
+    for (const long full = chosen == all_lanes ? block.n_min - W : -1; k0 <= full; k0 += W) whole_chunk(k0);
+    // Lanes that end together: the last ones with some of those before, once more.
+    if (k0 < block.n && chosen == all_lanes && block.n_min == block.n && block.n - W >= first)
+        return whole_chunk(block.n - W);
     for (; k0 < block.n; k0 += W) {
         for (int b = 0; b < W; ++b) m[b] = k0 + b < block.n ? mul_add(factor, value[k0 + b], vec{}) : vec{};
         store_values<true>(block, k0, m, chosen, out);
