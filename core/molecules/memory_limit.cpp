@@ -6,8 +6,9 @@
 #include "core/molecules/chains.hpp"
 
 #if defined(_WIN32)
-#define WIN32_LEAN_AND_MEAN
+#ifndef NOMINMAX
 #define NOMINMAX
+#endif
 #include <windows.h>
 #else
 #include <unistd.h>

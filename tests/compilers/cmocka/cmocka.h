@@ -19,6 +19,7 @@ struct CMUnitTest {
 #function, function        \
     }
 #define cmocka_run_group_tests(tests, setup, teardown) run_group((tests), sizeof(tests) / sizeof *(tests))
+#define cmocka_run_group_tests_name(name, tests, setup, teardown) cmocka_run_group_tests(tests, setup, teardown)
 
 #define print_message(...) ((void)printf(__VA_ARGS__))
 #define fail_msg(...) \
