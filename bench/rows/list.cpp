@@ -131,10 +131,12 @@ void add_chains(List &list) {
     for (std::int64_t n : {1, 2, 3, 32, 100, 1000})
         list.add(of_bonds(n), coil(n), Order::consecutive, Boxed::triclinic);
     for (std::int64_t n : {3, 32}) list.add(of_bonds(n), coil(n), Order::any, Boxed::triclinic);
-    for (std::int64_t n : {1, 3, 32, 100, 1000})
-        for (Layout layout : {Layout::separate, Layout::floats})
+    for (Layout layout : {Layout::separate, Layout::floats}) {
+        for (std::int64_t n : {1, 2, 3, 5, 10, 32, 100, 1000})
             list.add(of_bonds(n), coil(n), Order::consecutive, Boxed::no, layout);
-    list.add("32 bonds", coil(32), Order::consecutive, Boxed::orthorhombic, Layout::separate);
+        for (std::int64_t n : {1, 3, 32})
+            list.add(of_bonds(n), coil(n), Order::consecutive, Boxed::orthorhombic, layout);
+    }
 
     Chain heavy, masses, both;
     heavy.mass = 14;
@@ -251,7 +253,10 @@ void add_molecules(List &list) {
             list.add("toluene", toluene, order, box);
         }
     for (Layout layout : {Layout::separate, Layout::floats}) {
-        list.add("water", water, Order::consecutive, Boxed::no, layout);
+        for (Boxed box : {Boxed::no, Boxed::orthorhombic}) list.add("water", water, Order::consecutive, box, layout);
+        list.add("CH3", ch3, Order::consecutive, Boxed::no, layout);
+        list.add("CH4", ch4, Order::consecutive, Boxed::no, layout);
+        list.add("butane", butane, Order::consecutive, Boxed::no, layout);
         list.add("dodecane", dodecane, Order::consecutive, Boxed::no, layout);
     }
     list.add("CH, CH2, CH3 and water in turns", [formula] {
