@@ -131,10 +131,12 @@ void add_chains(List &list) {
     for (std::int64_t n : {1, 2, 3, 32, 100, 1000})
         list.add(of_bonds(n), coil(n), Order::consecutive, Boxed::triclinic);
     for (std::int64_t n : {3, 32}) list.add(of_bonds(n), coil(n), Order::any, Boxed::triclinic);
-    for (std::int64_t n : {1, 3, 32, 100, 1000})
-        for (Layout layout : {Layout::separate, Layout::floats})
+    for (Layout layout : {Layout::separate, Layout::floats}) {
+        for (std::int64_t n : {1, 2, 3, 5, 10, 32, 100, 1000})
             list.add(of_bonds(n), coil(n), Order::consecutive, Boxed::no, layout);
-    list.add("32 bonds", coil(32), Order::consecutive, Boxed::orthorhombic, Layout::separate);
+        for (std::int64_t n : {1, 3, 32})
+            list.add(of_bonds(n), coil(n), Order::consecutive, Boxed::orthorhombic, layout);
+    }
 
     Chain heavy, masses, both;
     heavy.mass = 14;
@@ -226,6 +228,52 @@ void add_options(List &list) {
     });
 }
 
+/// As programs call: sums and reports beside short chains, positions that are right already, tolerances.
+void add_calls_of_programs(List &list) {
+    for (std::int64_t n : {1, 3, 5}) {
+        list.one("forces, " + of_bonds(n) + ", virial", coil(n), false, false, [](const Call &c) {
+            Arrays &a = c.arrays;
+            double virial[9];
+            return c.calls.hol_forces(c.chains, a.r.packed(), a.v.packed(), a.f.packed(), a.lambda.data(), nullptr,
+                                      a.g.packed(), HOL_WRITE, virial);
+        });
+        list.one("velocities, " + of_bonds(n) + ", virial", coil(n), false, false, [](const Call &c) {
+            Arrays &a = c.arrays;
+            double virial[9];
+            return c.calls.hol_project_velocities(c.chains, a.r.packed(), a.v.packed(), a.lambda.data(), virial);
+        });
+        list.one("positions, " + of_bonds(n) + ", virial", coil(n), true, false, [](const Call &c) {
+            Arrays &a = c.arrays;
+            double virial[9];
+            return c.calls.hol_project_positions(c.chains, a.reference.packed(), a.r.packed(), a.v.packed(), c.scene.dt,
+                                                 a.lambda.data(), 0, virial, nullptr);
+        });
+        list.one("positions, " + of_bonds(n) + ", report", coil(n), true, false, [](const Call &c) {
+            Arrays &a = c.arrays;
+            hol_report report;
+            return c.calls.hol_project_positions(c.chains, a.reference.packed(), a.r.packed(), a.v.packed(), c.scene.dt,
+                                                 a.lambda.data(), 0, nullptr, &report);
+        });
+    }
+    for (std::int64_t n : {1, 2, 3, 5, 32})
+        list.one("positions, " + of_bonds(n) + ", nothing to do", coil(n), false, false, [](const Call &c) {
+            Arrays &a = c.arrays;
+            return c.calls.hol_project_positions(c.chains, a.reference.packed(), a.r.packed(), a.v.packed(), c.scene.dt,
+                                                 a.lambda.data(), 0, nullptr, nullptr);
+        });
+    for (std::int64_t n : {1, 2, 3, 5, 32})
+        for (const char *tolerance : {"1e-10", "1e-8", "1e-6", "3e-5", "1e-4", "1e-3", "1e-2"})
+            list.one("positions, " + of_bonds(n) + ", tolerance " + tolerance, coil(n), true, false,
+                     [tolerance](const Call &c) {
+                         Arrays &a = c.arrays;
+                         const int status = c.calls.hol_chains_set_tolerance(c.chains, std::stod(tolerance));
+                         if (status != HOL_OK) return status;
+                         return c.calls.hol_project_positions(c.chains, a.reference.packed(), a.r.packed(),
+                                                              a.v.packed(), c.scene.dt, a.lambda.data(), 0, nullptr,
+                                                              nullptr);
+                     });
+}
+
 void add_molecules(List &list) {
     const auto formula = [](const char *text) { return [text] { return bench::formula_kind(text); }; };
     const auto water = of(2000, bench::water_kind), ch3 = of(2000, formula("C(H)(H)H")),
@@ -251,7 +299,10 @@ void add_molecules(List &list) {
             list.add("toluene", toluene, order, box);
         }
     for (Layout layout : {Layout::separate, Layout::floats}) {
-        list.add("water", water, Order::consecutive, Boxed::no, layout);
+        for (Boxed box : {Boxed::no, Boxed::orthorhombic}) list.add("water", water, Order::consecutive, box, layout);
+        list.add("CH3", ch3, Order::consecutive, Boxed::no, layout);
+        list.add("CH4", ch4, Order::consecutive, Boxed::no, layout);
+        list.add("butane", butane, Order::consecutive, Boxed::no, layout);
         list.add("dodecane", dodecane, Order::consecutive, Boxed::no, layout);
     }
     list.add("CH, CH2, CH3 and water in turns", [formula] {
@@ -286,6 +337,7 @@ std::vector<Row> all_rows() {
     List list;
     add_chains(list);
     add_options(list);
+    add_calls_of_programs(list);
     add_molecules(list);
     return list.rows;
 }

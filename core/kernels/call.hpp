@@ -9,8 +9,9 @@ namespace holonomic {
 struct AtomArray {
     char *x, *y, *z;
     int64_t stride;  // bytes
-    bool is_float;
-    bool packed;  // doubles [n_atoms][3]: the layout that the kernels read and write in place
+    bool is_float;  // the caller's numbers are floats
+    bool packed;    // doubles [n_atoms][3], the layout that the kernels read and write in place; of floats: a copy
+    bool holds_floats() const { return is_float && !packed; }
 };
 
 // One chain as a kernel sees it.
@@ -34,6 +35,7 @@ struct Unit {
     int64_t count;
     bool regular;  // all `count` chains are like lanes[0], over consecutive atoms and bonds; else lanes[count], loose
     bool large;    // the caller's arrays are unlikely to be in cache
+    bool roomy = false;  // as many atoms as there are lanes may be read behind the last chain
 };
 
 // One molecule that is no chain, as a kernel sees it. Its atoms and bonds are numbered as in its shape.
@@ -70,6 +72,7 @@ struct MoleculeUnit {
     const LongTeam *team = nullptr;  // of a single large molecule
     const Forest *forests = nullptr;
     int64_t n_forests = 0;
+    bool roomy = false;  // as in Unit
 };
 
 // Chains of more bonds are cut into segments.

@@ -308,6 +308,81 @@ static void layouts_of_doubles_change_no_bit(void **state)
     mixture_free(&m);
 }
 
+/** Copies of a molecule, one behind the other, with motions of their own. */
+static mixture copies_in_motion(molecule_kind kind, int64_t size, int64_t n)
+{
+    enum { MOST = 61 };
+    molecule parts[MOST];
+    for (int64_t p = 0; p < n; ++p) {
+        parts[p] = molecule_make(kind, size, 5);
+        for (int64_t i = 0; i < 3 * parts[p].n_atoms; ++i) {
+            parts[p].v[i] = (float)(parts[p].v[i] * (1 + 0.01 * (double)p));
+            parts[p].f[i] = (float)(parts[p].f[i] * (1 - 0.01 * (double)p));
+        }
+    }
+    mixture m = mixture_make(parts, n, ONE_AFTER_THE_OTHER, 0);
+    for (size_t i = 0; i < mixture_size(&m); ++i) m.r[i] = (float)m.r[i];
+    const int64_t atoms = parts[0].n_atoms, bonds = parts[0].n_bonds;
+    for (int64_t k = 0; k < m.n_bonds; ++k) m.length[k] = parts[0].length[k % bonds];
+    hol_chains_destroy(m.chains);
+    CHECK(hol_chains_create(m.n_atoms, m.mass, &m.chains));
+    CHECK(hol_chains_add_molecules(m.chains, n, atoms, 0, bonds, m.pairs, m.length));
+    for (int64_t p = 0; p < n; ++p) molecule_free(parts + p);
+    return m;
+}
+
+static void copies_are_the_same_through_every_layout(void **state)
+{
+    (void)state;
+    static const struct {
+        molecule_kind kind;
+        int64_t size;
+    } kinds[] = {{MOLECULE_WATER, 3},       {MOLECULE_XH2, 2},  {MOLECULE_XH3, 3},         {MOLECULE_XH4, 4},
+                 {MOLECULE_ALKANE, 4},      {MOLECULE_RING, 6}, {MOLECULE_FIXED_ATOMS, 6}, {MOLECULE_TREE, 12},
+                 {MOLECULE_FUSED_RINGS, 3}, {MOLECULE_COMB, 60}};
+    const double dt = 1e-4;
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; ++k)
+        for (int bad = 0; bad < 2; ++bad) {
+            mixture m = copies_in_motion(kinds[k].kind, kinds[k].size, 61);
+            const size_t size = mixture_size(&m), n = (size_t)m.n_bonds;
+            double *start = copy_of(m.r, size), *reference = copy_of(m.r, size);
+            for (size_t i = 0; i < size; ++i) start[i] += dt * m.v[i];
+            if (bad) m.f[size / 2] = m.v[size / 2] = start[size / 2] = NAN;
+            for (int l = 0; l < n_layouts; ++l) {
+                double *lambda = untouched(n), *got = untouched(n), *g = copy_of(m.f, size), *v = copy_of(m.v, size),
+                       *q = copy_of(start, size), *u = copy_of(m.f, size);
+                laid_out r = lay_out(layouts + l, m.n_atoms, reference, 3), f = lay_out(layouts + l, m.n_atoms, m.f, 3),
+                         w = lay_out(layouts + l, m.n_atoms, m.v, 3), out = lay_out(layouts + l, m.n_atoms, m.f, 3),
+                         p = lay_out(layouts + l, m.n_atoms, start, 3), x = lay_out(layouts + l, m.n_atoms, m.f, 3);
+                for (int mode = HOL_WRITE; mode <= HOL_ADD; ++mode) {
+                    const int status = hol_forces(m.chains, reference, m.v, m.f, lambda, NULL, g, mode, NULL);
+                    assert_int_equal(status,
+                                     hol_forces_view(m.chains, INPUT(&r.view), INPUT(&w.view), INPUT(&f.view), got,
+                                                     NULL, &out.view, mode, NULL));
+                    assert_laid_out(&out, g, layouts[l].name);
+                    assert_same_bits(got, lambda, n);
+                }
+                const int of_v = hol_project_velocities(m.chains, reference, v, lambda, NULL);
+                assert_int_equal(of_v, hol_project_velocities_view(m.chains, INPUT(&r.view), &w.view, got, NULL));
+                if (l < n_double_layouts) { /* velocities that become floats are not corrected twice */
+                    const int of_r = hol_project_positions(m.chains, reference, q, u, dt, lambda, 0, NULL, NULL);
+                    assert_laid_out(&w, v, layouts[l].name);
+                    assert_int_equal(of_r, hol_project_positions_view(m.chains, INPUT(&r.view), &p.view, &x.view, dt,
+                                                                      got, 0, NULL, NULL));
+                    assert_laid_out(&p, q, layouts[l].name);
+                    assert_laid_out(&x, u, layouts[l].name);
+                    assert_same_bits(got, lambda, n);
+                }
+                assert_true(gaps_untouched(&w) && gaps_untouched(&p));
+                laid_out_free(&r), laid_out_free(&f), laid_out_free(&w), laid_out_free(&out), laid_out_free(&p),
+                    laid_out_free(&x);
+                free(lambda), free(got), free(g), free(v), free(q), free(u);
+            }
+            free(start), free(reference);
+            mixture_free(&m);
+        }
+}
+
 /** Inputs rounded to floats are as exact as any: lambda is that of the rounded numbers. */
 static void floats_and_two_dimensions_give_the_solution_of_the_rounded_numbers(void **state)
 {
@@ -352,6 +427,7 @@ int main(void)
         cmocka_unit_test(graphs_in_a_box_have_the_bits_of_each_alone),
         cmocka_unit_test(different_trees_have_the_bits_of_each_alone),
         cmocka_unit_test(layouts_of_doubles_change_no_bit),
+        cmocka_unit_test(copies_are_the_same_through_every_layout),
         cmocka_unit_test(floats_and_two_dimensions_give_the_solution_of_the_rounded_numbers),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

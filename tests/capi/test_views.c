@@ -5,6 +5,8 @@
 #include "layout.h"
 #include "positions.h"
 
+#include <math.h>
+
 static const double time_step = 0.004;
 
 /** Rounds all data to float, so that float and double views hold the same numbers. */
@@ -134,6 +136,64 @@ static void float_positions_end_at_the_rounding_of_floats(void **state)
     }
     free(start);
     assembly_free(&a);
+}
+
+/** All three verbs, of chains one behind the other, through a layout: the status and the bits of packed arrays. */
+static void alike_through(const assembly *a, const double *start, const layout *how)
+{
+    const size_t n = (size_t)a->n_bonds, size = assembly_size(a);
+    double *lambda = untouched(n), *view_lambda = untouched(n), *g = copy_of(a->v, size), *v = copy_of(a->v, size);
+    double *q = copy_of(start, size), *u = copy_of(a->v, size);
+    laid_out r = lay_out(how, a->n_atoms, a->r, 3), f = lay_out(how, a->n_atoms, a->f, 3);
+    laid_out out = lay_out(how, a->n_atoms, a->v, 3), w = lay_out(how, a->n_atoms, a->v, 3);
+    laid_out p = lay_out(how, a->n_atoms, start, 3), x = lay_out(how, a->n_atoms, a->v, 3);
+    hol_report report, view_report;
+    for (int mode = HOL_WRITE; mode <= HOL_ADD; ++mode) {
+        const int status = hol_forces(a->chains, a->r, a->v, a->f, lambda, NULL, g, mode, NULL);
+        assert_int_equal(status, hol_forces_view(a->chains, INPUT(&r.view), INPUT(&w.view), INPUT(&f.view), view_lambda,
+                                                 NULL, &out.view, mode, NULL));
+        assert_laid_out(&out, g, how->name);
+        assert_same_bits(lambda, view_lambda, n);
+    }
+    const int of_v = hol_project_velocities(a->chains, a->r, v, lambda, NULL);
+    assert_int_equal(of_v, hol_project_velocities_view(a->chains, INPUT(&r.view), &w.view, view_lambda, NULL));
+    assert_laid_out(&w, v, how->name);
+    assert_same_bits(lambda, view_lambda, n);
+    if (how->element == HOL_DOUBLE) {
+        const int of_r = hol_project_positions(a->chains, a->r, q, u, time_step, lambda, 0, NULL, &report);
+        assert_int_equal(of_r, hol_project_positions_view(a->chains, INPUT(&r.view), &p.view, &x.view, time_step,
+                                                          view_lambda, 0, NULL, &view_report));
+        assert_laid_out(&p, q, how->name);
+        assert_laid_out(&x, u, how->name);
+        assert_same_bits(lambda, view_lambda, n);
+        assert_memory_equal(&report, &view_report, sizeof report);
+        /* once more, where nothing is left to do, and without what is optional */
+        assert_int_equal(of_r, hol_project_positions(a->chains, a->r, q, NULL, time_step, NULL, 0, NULL, NULL));
+        assert_int_equal(of_r, hol_project_positions_view(a->chains, INPUT(&r.view), &p.view, NULL, time_step, NULL, 0,
+                                                          NULL, NULL));
+        assert_laid_out(&p, q, how->name);
+    }
+    laid_out_free(&r), laid_out_free(&f), laid_out_free(&out), laid_out_free(&w), laid_out_free(&p), laid_out_free(&x);
+    free(lambda), free(view_lambda), free(g), free(v), free(q), free(u);
+}
+
+/** So many chains that they come in several parts, one of them bad or none. */
+static void many_chains_are_the_same_through_every_layout(void **state)
+{
+    (void)state;
+    static const int64_t bonds[] = {1, 2, 3, 4, 5, 6, 20, 60, 100, 127, 140};
+    for (size_t b = 0; b < sizeof bonds / sizeof *bonds; ++b)
+        for (int masses = 0; masses < 2; ++masses)
+            for (int bad = 0; bad < 2; ++bad) {
+                assembly a = assembly_of_kind(masses ? CHAIN_HETEROGENEOUS : CHAIN_COIL, bonds[b] < 10 ? 203 : 23,
+                                              bonds[b], bonds[b], IN_ORDER, 47);
+                round_to_float(&a);
+                double *start = drift(&a, time_step, 0);
+                if (bad) a.r[3 * a.atoms[a.first[17]] + 1] = NAN;
+                for (int i = 0; i < n_layouts; ++i) alike_through(&a, start, &layouts[i]);
+                free(start);
+                assembly_free(&a);
+            }
 }
 
 static void flatten(assembly *a)
@@ -280,6 +340,7 @@ int main(void)
         cmocka_unit_test(forces_are_the_same_through_every_layout),
         cmocka_unit_test(velocities_are_the_same_through_every_layout),
         cmocka_unit_test(positions_are_the_same_through_every_layout_of_doubles),
+        cmocka_unit_test(many_chains_are_the_same_through_every_layout),
         cmocka_unit_test(float_positions_end_at_the_rounding_of_floats),
         cmocka_unit_test(two_dimensions_give_the_bits_of_three_with_zero_z),
         cmocka_unit_test(views_may_be_null_where_arrays_may),

@@ -29,10 +29,10 @@ struct System {
 
 // Plain forward sweep, a bond at a time. It turns right-hand sides into u = y / P and keeps the multipliers. Over four
 // bonds it carries E as a fraction A / F, so that no division waits for the one before.
-template <bool uniform, bool keep_pivots>
+template <bool uniform, bool keep_pivots, class Where = Source>
 struct Sweep {
     const Block &block;
-    const Source &source;
+    const Where &source;
     const System s;
     vec3 d = {};  // the bond before
     vec q = {};
@@ -97,7 +97,7 @@ struct Sweep {
         }
         const mask orthogonal = nearly_orthogonal(g, X);
         if (any(orthogonal)) {
-            const Source copy = source;  // so that it is not kept in memory for this
+            const Where copy = source;  // so that it is not kept in memory for this
             g = exact_dots(copy, k, orthogonal, g);
         }
     }

@@ -17,9 +17,11 @@ HOL_INLINE mask nearly_orthogonal(vec g, vec X, double cosine = small_cosine) {
     return less(not_orthogonal(g * g, X, cosine), vec{});
 }
 
-// g of joint k in one lane, with compensated products of unrounded differences.
+// g of joint k in one lane, with compensated products of unrounded differences. Where: a Source, or what has the same
+// members.
 #if HOL_LANES != 4 && !HOL_FOURS
-HOL_NOINLINE double exact_dot(const Source &source, int lane, long k) {
+template <class Where>
+HOL_NOINLINE double exact_dot(const Where &source, int lane, long k) {
     Vector3<double> d[2], low[2];
     for (int b = 0; b < 2; ++b)
         unrounded_bond(*source.box, source.atom(lane, k - 1 + b), source.atom(lane, k + b), d[b], low[b]);
@@ -33,9 +35,10 @@ HOL_NOINLINE double exact_dot(const Source &source, int lane, long k) {
 }
 
 #else
-HOL_INLINE double exact_dot(const Source &source, int lane, long k) {
+template <class Where>
+HOL_INLINE double exact_dot(const Where &source, int lane, long k) {
     const auto at = [&](long atom) HOL_FORCED {
-        const double *const p = source.atom(lane, atom);
+        const auto p = source.atom(lane, atom);
         return components{p[0], p[1], p[2], 0};
     };
     const components r0 = at(k - 1), r1 = at(k), r2 = at(k + 1);
@@ -46,7 +49,8 @@ HOL_INLINE double exact_dot(const Source &source, int lane, long k) {
 #endif
 
 // The lanes in `which` of g, for joint k.
-HOL_NOINLINE vec exact_dots(const Source &source, long k, mask which, vec g) {
+template <class Where>
+HOL_NOINLINE vec exact_dots(const Where &source, long k, mask which, vec g) {
     for (unsigned left = bits(which); left; left &= left - 1) {
         const int i = __builtin_ctz(left);
         if (source.len && k >= source.len[i]) continue;

@@ -86,7 +86,7 @@ void open_block(const Unit &unit, int64_t first, Block &block, Lane *lane) {
             lane[i].chain = block.chain[i] = head.chain + c;
         }
         block.staged = head.atoms != nullptr;
-        block.roomy = (left - block.lanes) * (n + 1) >= W && !block.staged;
+        block.roomy = (unit.roomy || (left - block.lanes) * (n + 1) >= W) && !block.staged;
         if (unit.large) block.ahead = 3 * W * (n + 1);  // the next unit often goes on where this one ends
         if (unit.large && left >= 2 * W) block.list_ahead = W * (n + 1);
         return;

@@ -8,7 +8,9 @@
 #include "core/kernels/arithmetic/image.hpp"
 #include "core/kernels/isa/choose.hpp"
 #include "core/kernels/memory/atom_rows.hpp"
+#include "core/kernels/memory/columns.hpp"
 #include "core/kernels/memory/load.hpp"
+#include "core/kernels/memory/outputs.hpp"
 
 namespace holonomic::HOL_ISA {
 
@@ -20,22 +22,28 @@ constexpr int largest_boxed_molecule = 3;  // in a box, or not over consecutive 
 //   next(first, end)   how many of these are the next block; 0: none is left
 //   atom(base, i, k)   atom k of lane i in a packed array
 //   bond_of, chain_of  first bond and number of lane i's molecule
-//   source(base, box)  where it is, for what is rare
+//   array(of_call)     what atoms are read from: the base of a packed array, or columns
+//   source(array, box) where it is, for what is rare
+// in_row: rows of molecules follow each other in packed arrays. alike: all have the masses of the unit's first one, and
+// one's atoms stand behind the other's. loose: each has its own.
 
 // One behind the other in a regular unit.
 template <int N>
 struct InRow {
     static constexpr int bonds = N;
-    static constexpr bool in_row = true, loose = false;
+    static constexpr bool packed = true, in_row = true, alike = true, loose = false;
     static constexpr int elements = 3 * (N + 1);
     typedef EvenLanes<elements> Lanes;
     int64_t at, bond, chain;  // of the first one
     InRow(const Unit &unit, int64_t first, int64_t)
         : at(3 * (unit.lanes[0].first_atom + (N + 1) * first)), bond(unit.lanes[0].first_bond + N * first),
           chain(unit.lanes[0].chain + first) {}
+    HOL_STATIC double *array(const AtomArray &a) { return base_of(a); }
     HOL_FORCED Lanes lanes_of(double *base) const { return {base + at}; }
     // W atoms behind them can be read.
-    HOL_STATIC int64_t end(const Unit &unit, int64_t) { return unit.count - (W == 1 ? 0 : (W + N) / (N + 1)); }
+    HOL_STATIC int64_t end(const Unit &unit, int64_t) {
+        return unit.count - (W == 1 || unit.roomy ? 0 : (W + N) / (N + 1));
+    }
     HOL_STATIC int64_t next(int64_t first, int64_t end) { return end - first >= W ? W : 0; }
     HOL_FORCED const double *atom(const double *base, int i, long k) const { return base + at + 3 * ((N + 1) * i + k); }
     HOL_FORCED int64_t bond_of(int i) const { return bond + N * i; }
@@ -49,7 +57,7 @@ struct InRow {
 // In a regular unit, with lists of atoms.
 template <int N>
 struct ByList : InRow<N>, AtomLists {
-    static constexpr bool in_row = false;
+    static constexpr bool in_row = false, alike = false;
     const bool fetches;  // whether atoms behind these may be fetched, and are worth it
     ByList(const Unit &unit, int64_t first, int64_t used)
         : InRow<N>(unit, first, used), AtomLists(unit.lanes[0].atoms + (N + 1) * first, N + 1),
@@ -68,8 +76,9 @@ struct ByList : InRow<N>, AtomLists {
 template <int N>
 struct ByLanes {
     static constexpr int bonds = N;
-    static constexpr bool in_row = false, loose = true;
+    static constexpr bool packed = true, in_row = false, alike = false, loose = true;
     const Lane *lane;
+    HOL_STATIC double *array(const AtomArray &a) { return base_of(a); }
     ByLanes(const Unit &unit, int64_t first, int64_t used) : lane(unit.lanes + first) {
         if (__builtin_expect(used == W, 1)) return;
         for (int i = 0; i < W; ++i) last_[i] = lane[i < used ? i : 0];
@@ -89,6 +98,39 @@ struct ByLanes {
 
 private:
     Lane last_[W];
+};
+
+// One behind the other in a regular unit, in arrays of columns.
+template <int N>
+struct InColumns {
+    static constexpr int bonds = N;
+    static constexpr bool packed = false, in_row = false, alike = true, loose = false;
+    int64_t at, bond, chain;  // of the first one
+    InColumns(const Unit &unit, int64_t first, int64_t)
+        : at(unit.lanes[0].first_atom + (N + 1) * first), bond(unit.lanes[0].first_bond + N * first),
+          chain(unit.lanes[0].chain + first) {}
+    HOL_STATIC Columns array(const AtomArray &a) { return Columns(a); }
+    HOL_STATIC int64_t end(const Unit &unit, int64_t) { return unit.count; }
+    HOL_STATIC int64_t next(int64_t first, int64_t end) { return end - first >= W ? W : 0; }
+    HOL_FORCED int64_t bond_of(int i) const { return bond + N * i; }
+    HOL_FORCED int64_t chain_of(int i) const { return chain + i; }
+    // As Source.
+    struct At {
+        const Box *box;
+        Columns columns;
+        int64_t at;
+        static constexpr const long *len = nullptr;
+        struct Atom {
+            double x[3];
+            operator const double *() const { return x; }
+        };
+        Atom atom(int lane, long k) const {
+            const int64_t i = at + (N + 1) * lane + k;
+            return {{columns.component[0][i], columns.component[1][i], columns.component[2][i]}};
+        }
+    };
+    HOL_FORCED At source(const Columns &columns, const Box &box) const { return {&box, columns, at}; }
+    HOL_FORCED void fetch_next(const Columns &) const {}
 };
 
 // Vectors of n values of each lane, rounded up to what is transposed at a time.
@@ -117,6 +159,11 @@ HOL_INLINE void load_molecules(const Place &place, const double *base, vec *elem
             elements[3 * k + 2] = a.z;
         }
     }
+}
+
+template <class Place>
+HOL_INLINE void load_molecules(const Place &place, const Columns &columns, vec *elements) {
+    read_columns<Place::bonds + 1>(columns, place.at, reinterpret_cast<vec3 *>(elements));
 }
 
 // Gives a sink n values of each lane, transposed in place.
@@ -150,6 +197,18 @@ HOL_INLINE void store_molecules(const Place &place, vec *value, double *base) {
     }
 }
 
+template <Update update, class Place>
+HOL_INLINE void store_molecules(const Place &place, vec *value, const Columns &columns) {
+    constexpr int n = Place::bonds + 1;
+    if (update == add_) {
+        vec before[3 * n];
+        load_molecules(place, columns, before);
+        HOL_UNROLL
+        for (int e = 0; e < 3 * n; ++e) value[e] = before[e] + value[e];
+    }
+    write_columns<n>(columns, place.at, reinterpret_cast<vec3 *>(value));
+}
+
 // Writes factor times a value per bond; zeros as +0.
 template <class Place>
 HOL_INLINE void store_multipliers(const Place &place, const vec *t, vec factor, double *base) {
@@ -166,6 +225,26 @@ HOL_INLINE void store_multipliers(const Place &place, const vec *t, vec factor, 
     } else {
         store_rows<N>(value, AtomSink<write_, EvenLanes<N>>{base + place.bond});
     }
+}
+
+// Counts factor times the virial of the bonds of `used` molecules, as add_virial() does. They are copied, so that they
+// stay in registers where nobody asks for it.
+template <int N>
+HOL_NOINLINE void add_virial_of(const vec3 (&d)[N], const vec (&t)[N], int64_t used, vec factor, Tally &tally) {
+    VirialSum sum;
+    for (int k = 0; k < N; ++k) sum.add(d[k], t[k] * d[k]);
+    sum.count(first_lanes(static_cast<int>(used)), factor, tally);
+}
+template <int N>
+HOL_INLINE void count_virial(const vec3 *d, const vec *t, int64_t used, vec factor, Tally &tally) {
+    vec3 bonds[N];
+    vec values[N];
+    HOL_UNROLL
+    for (int k = 0; k < N; ++k) {
+        bonds[k] = d[k];
+        values[k] = t[k];
+    }
+    add_virial_of<N>(bonds, values, used, factor, tally);
 }
 
 // Minimum images of the bonds of a place. In a triclinic box that is compiled into the kernels of molecules in a row
@@ -193,8 +272,8 @@ HOL_INLINE void take_images(const Box &box, vec3 *D) {
 
 // The bonds of a place. `boxed`: there may be a box. In a row they are differences of numbers as they stand in memory,
 // if that transposes fewer vectors and nobody needs the atoms; elsewhere the atoms are read first.
-template <bool boxed, bool with_atoms, class Place>
-HOL_INLINE void load_bonds(const Box &box, const Place &place, const double *base, vec *atoms, vec3 *D) {
+template <bool boxed, bool with_atoms, class Place, class Array>
+HOL_INLINE void load_bonds(const Box &box, const Place &place, const Array &array, vec *atoms, vec3 *D) {
     constexpr int N = Place::bonds;
     if constexpr (Place::in_row && !with_atoms && whole<3 * N> < vectors_of<N>) {
         vec d[whole<3 * N>];
@@ -202,7 +281,7 @@ HOL_INLINE void load_bonds(const Box &box, const Place &place, const double *bas
         for (int j = 0; j < whole<3 * N> / W; ++j) {
             HOL_UNROLL
             for (int i = 0; i < W; ++i) {
-                const double *const p = place.atom(base, i, 0) + j * W;
+                const double *const p = place.atom(array, i, 0) + j * W;
                 d[j * W + i] = load(p + 3) - load(p);
             }
             transpose(d + j * W);
@@ -210,7 +289,7 @@ HOL_INLINE void load_bonds(const Box &box, const Place &place, const double *bas
         HOL_UNROLL
         for (int k = 0; k < N; ++k) D[k] = {d[3 * k], d[3 * k + 1], d[3 * k + 2]};
     } else {
-        load_molecules(place, base, atoms);
+        load_molecules(place, array, atoms);
         vec *const d = &D[0].x;
         HOL_UNROLL
         for (int c = 0; c < 3 * N; ++c) d[c] = atoms[c + 3] - atoms[c];
@@ -228,8 +307,8 @@ struct BlockMasses {
     const Block &block;
     vec w[N + 1] = {};
     int64_t kind[W];
-    explicit BlockMasses(const Block &given) : block(Place::in_row ? given : own) {
-        if (Place::in_row) return;
+    explicit BlockMasses(const Block &given) : block(Place::alike ? given : own) {
+        if (Place::alike) return;
         if (!Place::loose) {
             own = given;
             for (int k = 0; k <= N; ++k) w[k] = given.uniform_w ? splat(1.0) : given.w[k];
@@ -307,6 +386,33 @@ static inline int64_t any_molecules(const Unit &unit, const Block &block, int64_
             },
             uniform);
     });
+}
+
+// Whether chains of a unit may be read from columns. At most `most` bonds.
+template <int most = largest_molecule>
+HOL_INLINE bool fit_columns(const Unit &unit, bool boxed) {
+    const Lane &head = unit.lanes[0];
+    constexpr int most_boxed = most < largest_boxed_molecule ? most : largest_boxed_molecule;
+    return !small_set && W > 1 && unit.regular && !head.atoms && head.n_bonds <= (boxed ? most_boxed : most);
+}
+
+// The same for arrays of columns. `boxed`: there may be a box.
+template <int most = largest_molecule, class Kernel>
+static inline int64_t molecules_in_columns(const Unit &unit, const Block &block, int64_t first, bool boxed,
+                                           bool one_length, const Kernel &kernel) {
+    if constexpr (small_set || W == 1) {
+        return first;
+    } else {
+        if (!fit_columns<most>(unit, boxed)) return first;
+        return choose_number<1, most>(unit.lanes[0].n_bonds, [&](auto constant) {
+            constexpr int n = decltype(constant)::value;
+            return choose(
+                [&](auto equal) {
+                    return kernel(Type<InColumns<n>>{}, equal, Constant<bool, n <= largest_boxed_molecule>{});
+                },
+                block.uniform_w && one_length);
+        });
+    }
 }
 
 }  // namespace holonomic::HOL_ISA

@@ -6,8 +6,8 @@
 namespace holonomic::HOL_ISA {
 
 // G of the atoms of W molecules, written or added.
-template <class Place>
-HOL_INLINE void store_pulls(const vec3 *D, const vec *t, const Place &place, double *out, bool add) {
+template <class Place, class Array>
+HOL_INLINE void store_pulls(const vec3 *D, const vec *t, const Place &place, const Array &out, bool add) {
     constexpr int N = Place::bonds;
     vec value[vectors_of<N>] = {};
     vec3 before = {};

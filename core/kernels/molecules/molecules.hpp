@@ -78,7 +78,7 @@ HOL_INLINE void read_row(const AtomArray &array, int64_t number, double *x) {
     const char *const p[3] = {array.x, array.y, array.z};
     for (int c = 0; c < 3; ++c)
         x[c] = !p[c]            ? 0.0
-               : array.is_float ? element<float>(p[c] + number * array.stride)
+               : array.holds_floats() ? element<float>(p[c] + number * array.stride)
                                 : element<double>(p[c] + number * array.stride);
 }
 

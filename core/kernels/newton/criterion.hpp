@@ -48,7 +48,11 @@ public:
             }
             const vec per_a = x_.per_a_min, a = mul_add(error * x_.a_max, per_a * per_a, x_.a_max);
             const vec most = mul_add(mul_add(a, splat(static_cast<double>(block_.n)), first), per_a, splat(1.0));
-            const mask excluded = less(a2 * max(splat(2 * tolerance_), (2 * rounding_) * most), error);
+            const vec carried = (2 * rounding_) * most;
+            // A tolerance above that decides alone.
+            if (tolerance_ > rounding_ && !any(less(splat(tolerance_), carried)))
+                return less_equal(error, a2 * splat(tolerance_));
+            const mask excluded = less(a2 * max(splat(2 * tolerance_), carried), error);
             if (!any(~excluded)) return none();
             const mask accepted = less_equal(error, a2 * max(splat(tolerance_), rounding_ * (1.0 + first / x_.a_min)));
             if (!any(~(excluded | accepted))) return accepted;

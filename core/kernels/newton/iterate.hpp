@@ -37,7 +37,13 @@ HOL_INLINE Outcome iterate(const Block &block, Newton &x, const PositionsCall &c
     for (int i = 0; i < call.max_iterations && any(active); ++i) {
         // Branches on the lanes, so that the next step does not wait for the errors of this one.
         const bool first = i == 0 && !guess;
-        if (careful || __builtin_expect(bits(active) != all_lanes, 0)) {
+        if (fixed > 0) {
+            // Lanes that are right already, or done, stay as they are: a molecule's neighbours cost it nothing.
+            if (first)
+                substitute_back<fixed>(block, x, true, false, false, active);
+            else
+                substitute_back<fixed>(block, x, false, false, false, active);
+        } else if (careful || __builtin_expect(bits(active) != all_lanes, 0)) {
             const Newton copy = x;
             substitute_back_in(block, copy, first, careful, active);
         } else if (first)

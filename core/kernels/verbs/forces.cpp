@@ -5,6 +5,7 @@
 #include "core/kernels/memory/load.hpp"
 #include "core/kernels/memory/open.hpp"
 #include "core/kernels/memory/outputs.hpp"
+#include "core/kernels/memory/parts.hpp"
 #include "core/kernels/memory/prefetch.hpp"
 #include "core/kernels/memory/small.hpp"
 #include "core/kernels/memory/small_pulls.hpp"
@@ -89,9 +90,9 @@ static void forces_block(const Block &block, const Lane *lane, const ForcesCall 
 }
 
 // Bonds D[k] of W molecules and their right-hand sides t[k].
-template <bool uniform, bool boxed, class Place>
-HOL_INLINE void load_sides(const Block &block, const Box &box, const Place &place, const double *r, const double *v,
-                           const double *f, vec3 *D, vec *t) {
+template <bool uniform, bool boxed, class Place, class Array>
+HOL_INLINE void load_sides(const Block &block, const Box &box, const Place &place, const Array &r, const Array &v, const Array &f,
+                           vec3 *D, vec *t) {
     constexpr int N = Place::bonds;
     vec e[vectors_of<N>];
     vec3 dv[N] = {}, *const x = reinterpret_cast<vec3 *>(e);
@@ -117,10 +118,10 @@ HOL_INLINE void load_sides(const Block &block, const Box &box, const Place &plac
 
 // Does molecules from `first` on. Returns the first one that is not done. `given`: the block of a regular unit.
 template <class Place, bool uniform, bool boxed>
-static int64_t forces_of_molecules(const ForcesCall &call, const Unit &unit, const Block &given, int64_t first) {
+static int64_t forces_of_molecules(const ForcesCall &call, const Unit &unit, const Block &given, int64_t first,
+                                   Tally &tally) {
     constexpr int N = Place::bonds;
-    const double *const r = base_of(call.r), *const v = base_of(call.v), *const f = base_of(call.f);
-    double *const g = base_of(call.g);
+    const auto r = Place::array(call.r), v = Place::array(call.v), f = Place::array(call.f), g = Place::array(call.g);
     BlockMasses<Place> masses(given);
     const Block &block = masses.block;
     const int64_t end = Place::end(unit, first);
@@ -133,8 +134,8 @@ static int64_t forces_of_molecules(const ForcesCall &call, const Unit &unit, con
         place.fetch_next(v);
         place.fetch_next(f);
         load_sides<uniform, boxed>(block, call.box, place, r, v, f, D, t);
-        const Source source = place.source(r, call.box);
-        Sweep<uniform, false> sweep{block, source, System(D, t, L, nullptr)};
+        const auto source = place.source(r, call.box);
+        Sweep<uniform, false, decltype(place.source(r, call.box))> sweep{block, source, System(D, t, L, nullptr)};
         HOL_UNROLL
         for (int k = 0; k < N; ++k)
             sweep.step(
@@ -143,21 +144,43 @@ static int64_t forces_of_molecules(const ForcesCall &call, const Unit &unit, con
         backward(0, N, t, L);
         if (g) store_pulls(D, t, place, g, call.add);
         if (call.lambda) store_multipliers(place, t, splat(0.5), call.lambda);
+        if (__builtin_expect(call.virial, 0)) count_virial<N>(D, t, n, splat(1.0), tally);
     }
     return first;
 }
 
-static int64_t small_forces(const ForcesCall &call, const Unit &unit, Block &block, int64_t first, Tally &) {
-    const bool plain = call.r.packed && (!call.v.x || call.v.packed) && call.f.packed && (!call.g.x || call.g.packed) &&
-                       !call.tension && !call.virial;
-    if (!plain || !call.f.x) return first;
-    return any_molecules(
-        unit, block, first, call.box.shape != Box::none, true, [&](auto place, auto uniform, auto boxed) {
-            return forces_of_molecules<typename decltype(place)::type, uniform, boxed>(call, unit, block, first);
-        });
+static bool reads_columns(const ForcesCall &call) {
+    return is_in_columns(call.r) && (!call.v.x || is_in_columns(call.v)) && call.f.x && is_in_columns(call.f) &&
+           (!call.g.x || is_in_columns(call.g)) && !call.tension;
+}
+
+static int64_t small_forces(const ForcesCall &call, const Unit &unit, Block &block, int64_t first, Tally &tally) {
+    if (!call.f.x || call.tension) return first;
+    const bool packed =
+        call.r.packed && (!call.v.x || call.v.packed) && call.f.packed && (!call.g.x || call.g.packed);
+    const bool boxed = call.box.shape != Box::none;
+    const auto kernel = [&](auto place, auto uniform, auto in_box) {
+        return forces_of_molecules<typename decltype(place)::type, uniform, in_box>(call, unit, block, first, tally);
+    };
+    if (packed) return any_molecules(unit, block, first, boxed, true, kernel);
+    return reads_columns(call) ? molecules_in_columns(unit, block, first, boxed, true, kernel) : first;
+}
+
+// Arrays that are not packed. False if nothing has been done.
+static bool forces_in_parts(const ForcesCall &call, const Unit &unit, double *scratch, Tally &tally) {
+    if (reads_columns(call) && fit_columns(unit, call.box.shape != Box::none)) return false;
+    const PartArray<ForcesCall> arrays[] = {{&ForcesCall::r, true, false},
+                                            {&ForcesCall::v, true, false},
+                                            {&ForcesCall::f, true, false},
+                                            {&ForcesCall::g, call.add, true}};
+    return in_packed_parts(call, unit, arrays, false, tally,
+                           [=](const ForcesCall &c, const Unit &u, Tally &own) {
+                               for_each_block(c, u, scratch, own, forces_block, small_forces);
+                           });
 }
 
 void forces(const ForcesCall &call, const Unit &unit, double *scratch, Tally &tally) {
+    if (!call.r.packed && forces_in_parts(call, unit, scratch, tally)) return;
     for_each_block(call, unit, scratch, tally, forces_block, small_forces);
 }
 

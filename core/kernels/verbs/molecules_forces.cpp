@@ -1,4 +1,5 @@
 // Constraint forces of molecules that are no chains, and multipliers for given right-hand sides.
+#include "core/kernels/memory/parts.hpp"
 #include "core/kernels/molecules/forces.hpp"
 #include "core/kernels/molecules/network/network.hpp"
 #include "core/kernels/molecules/star/star_linear.hpp"
@@ -9,12 +10,17 @@ namespace holonomic::HOL_ISA {
 using namespace graph;
 
 // Of forces, or for given right-hand sides. Out of line, so that it is compiled once.
-HOL_NOINLINE void solve_triangles(const TriangleLinearVerb &verb, const MoleculeUnit &unit, bool packed,
+HOL_NOINLINE void solve_triangles(const TriangleLinearVerb &verb, const MoleculeUnit &unit, bool packed, bool columns,
                                   double *scratch) {
-    for_each_triangle(verb, unit, packed, scratch);
+    for_each_triangle(verb, unit, packed, scratch, columns);
 }
 
-void molecules_forces(const ForcesCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
+static bool reads_columns(const ForcesCall &call) {
+    return is_in_columns(call.r) && (!call.v.x || is_in_columns(call.v)) && (!call.f.x || is_in_columns(call.f)) &&
+           (!call.g.x || is_in_columns(call.g));
+}
+
+static void forces_of_blocks(const ForcesCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
     if (unit.forests) return forests_forces(call, unit, scratch, tally);
     const bool packed =
         call.r.packed && (!call.v.x || call.v.packed) && (!call.f.x || call.f.packed) && (!call.g.x || call.g.packed);
@@ -23,12 +29,26 @@ void molecules_forces(const ForcesCall &call, const MoleculeUnit &unit, double *
     if (way == Way::triangle) {
         const TriangleCall triangles = {call.r,      call.v,       call.f,   nullptr,     call.g,
                                         call.lambda, call.tension, call.add, call.virial, call.box};
-        return solve_triangles(TriangleLinearVerb(triangles, &call, nullptr, tally), unit, packed, scratch);
+        return solve_triangles(TriangleLinearVerb(triangles, &call, nullptr, tally), unit, packed, reads_columns(call),
+                               scratch);
     }
     NextMolecules ahead({&call.r, &call.v, &call.f, &call.g}, call.lambda);
     const LinearWork<ForcesCall> work = {call, *unit.schedule, way, packed, tally, unit.team, ahead};
     if (way == Way::star && do_stars<3>(StarForcesVerb{call, tally}, work, unit, scratch)) return;
     for_each_block(unit, scratch, ahead, work);
+}
+
+void molecules_forces(const ForcesCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
+    const PartArray<ForcesCall> arrays[] = {{&ForcesCall::r, true, false},
+                                            {&ForcesCall::v, true, false},
+                                            {&ForcesCall::f, true, false},
+                                            {&ForcesCall::g, call.add, true}};
+    const auto blocks = [=](const ForcesCall &c, const MoleculeUnit &u, Tally &own) {
+        forces_of_blocks(c, u, scratch, own);
+    };
+    if (call.r.packed || (reads_triangles_in_columns(unit) && reads_columns(call)) ||
+        !in_packed_parts(call, unit, arrays, false, tally, blocks))
+        blocks(call, unit, tally);
 }
 
 void molecules_solve(const SolveCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
@@ -40,7 +60,7 @@ void molecules_solve(const SolveCall &call, const MoleculeUnit &unit, double *sc
         const AtomArray none = {};
         const TriangleCall triangles = {call.r,      none,         none,     call.rhs,    call.g,
                                         call.lambda, call.tension, call.add, call.virial, call.box};
-        return solve_triangles(TriangleLinearVerb(triangles, nullptr, &call, tally), unit, packed, scratch);
+        return solve_triangles(TriangleLinearVerb(triangles, nullptr, &call, tally), unit, packed, false, scratch);
     }
     NextMolecules ahead({&call.r, &call.g}, call.lambda);
     const LinearWork<SolveCall> work = {call, *unit.schedule, way, packed, tally, unit.team, ahead};

@@ -1,4 +1,5 @@
 // Position level of molecules that are no chains.
+#include "core/kernels/memory/parts.hpp"
 #include "core/kernels/molecules/linear.hpp"
 #include "core/kernels/molecules/list/flat_linear.hpp"
 #include "core/kernels/molecules/list/flat_proof.hpp"
@@ -51,13 +52,17 @@ struct PathsPositionsWork : PositionsWork {
     }
 };
 
-void molecules_positions(const PositionsCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
+static bool reads_columns(const PositionsCall &call) {
+    return is_in_columns(call.r) && is_in_columns(call.r_ref) && (!call.v.x || is_in_columns(call.v)) && !call.guess;
+}
+
+static void positions_of_blocks(const PositionsCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
     const Way way = unit.schedule->way.positions;
     if (unit.forests && moves_in_forest(way)) return forests_positions(call, unit, scratch, tally);
     const bool packed = call.r.packed && call.r_ref.packed && (!call.v.x || call.v.packed);
     if (way == Way::network) return solve_networks(call, unit, packed, scratch, tally);
     if (way == Way::triangle)
-        return for_each_triangle(TrianglePositionsVerb{call, tally}, unit, packed, scratch);
+        return for_each_triangle(TrianglePositionsVerb{call, tally}, unit, packed, scratch, reads_columns(call));
     NextMolecules ahead({&call.r_ref, &call.r, &call.v}, call.lambda);
     const PositionsWork work = {call, *unit.schedule, packed, tally, unit.team, ahead};
     if (way == Way::paths) {
@@ -69,6 +74,18 @@ void molecules_positions(const PositionsCall &call, const MoleculeUnit &unit, do
         (do_stars<3>(stars, work, unit, scratch) || do_stars<4>(stars, work, unit, scratch)))
         return;
     for_each_block(unit, scratch, ahead, work);
+}
+
+void molecules_positions(const PositionsCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
+    const PartArray<PositionsCall> arrays[] = {{&PositionsCall::r_ref, true, false},
+                                               {&PositionsCall::r, true, true},
+                                               {&PositionsCall::v, true, true}};
+    const auto blocks = [=](const PositionsCall &c, const MoleculeUnit &u, Tally &own) {
+        positions_of_blocks(c, u, scratch, own);
+    };
+    if (call.r.packed || (reads_triangles_in_columns(unit) && reads_columns(call)) ||
+        !in_packed_parts(call, unit, arrays, true, tally, blocks))
+        blocks(call, unit, tally);
 }
 
 }  // namespace holonomic::HOL_ISA

@@ -1,4 +1,5 @@
 // Velocity level of molecules that are no chains.
+#include "core/kernels/memory/parts.hpp"
 #include "core/kernels/molecules/network/network.hpp"
 #include "core/kernels/molecules/star/star_linear.hpp"
 #include "core/kernels/molecules/velocities.hpp"
@@ -8,17 +9,29 @@ namespace holonomic::HOL_ISA {
 
 using namespace graph;
 
-void molecules_velocities(const VelocitiesCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
+static bool reads_columns(const VelocitiesCall &call) { return is_in_columns(call.r) && is_in_columns(call.v); }
+
+static void velocities_of_blocks(const VelocitiesCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
     if (unit.forests) return forests_velocities(call, unit, scratch, tally);
     const bool packed = call.r.packed && call.v.packed;
     const Way way = unit.schedule->way.forces;
     if (way == Way::network) return solve_networks(call, unit, packed, scratch, tally);
     if (way == Way::triangle)
-        return for_each_triangle(TriangleVelocitiesVerb(call, tally), unit, packed, scratch);
+        return for_each_triangle(TriangleVelocitiesVerb(call, tally), unit, packed, scratch, reads_columns(call));
     NextMolecules ahead({&call.r, &call.v}, call.lambda);
     const LinearWork<VelocitiesCall> work = {call, *unit.schedule, way, packed, tally, unit.team, ahead};
     if (way == Way::star && do_stars<3>(StarVelocitiesVerb{call, tally}, work, unit, scratch)) return;
     for_each_block(unit, scratch, ahead, work);
+}
+
+void molecules_velocities(const VelocitiesCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
+    const PartArray<VelocitiesCall> arrays[] = {{&VelocitiesCall::r, true, false}, {&VelocitiesCall::v, true, true}};
+    const auto blocks = [=](const VelocitiesCall &c, const MoleculeUnit &u, Tally &own) {
+        velocities_of_blocks(c, u, scratch, own);
+    };
+    if (call.r.packed || (reads_triangles_in_columns(unit) && reads_columns(call)) ||
+        !in_packed_parts(call, unit, arrays, false, tally, blocks))
+        blocks(call, unit, tally);
 }
 
 }  // namespace holonomic::HOL_ISA

@@ -2,6 +2,7 @@
 #include "core/kernels/arithmetic/image.hpp"
 #include "core/kernels/isa/choose.hpp"
 #include "core/kernels/memory/atom_rows.hpp"
+#include "core/kernels/memory/parts.hpp"
 #include "core/kernels/memory/small.hpp"
 #include "core/kernels/newton/attempts.hpp"
 #include "core/kernels/verbs/verbs.hpp"
@@ -54,18 +55,21 @@ template <int N>
 constexpr int64_t small_scratch = vectors_per_bond *(N + 2 * W + 8);
 
 // What is asked of a call for every block, found once.
+template <class Place>
 struct SmallCall {
+    typedef decltype(Place::array(AtomArray{})) Array;
     const Box &box_ref, &box;
-    double *r_ref, *r, *v, *lambda;
-    double per_dt, factor;  // of multipliers, without the unit of masses
+    const Array r_ref, r, v;
+    double *const lambda;
+    const double per_dt, per_dt2, factor;  // the last of multipliers, without the unit of masses
     explicit SmallCall(const PositionsCall &c)
-        : box_ref(c.box_ref), box(c.box), r_ref(base_of(c.r_ref)), r(base_of(c.r)), v(base_of(c.v)), lambda(c.lambda),
-          per_dt(1 / c.dt), factor(0.5 / (c.dt * c.dt)) {}
+        : box_ref(c.box_ref), box(c.box), r_ref(Place::array(c.r_ref)), r(Place::array(c.r)), v(Place::array(c.v)),
+          lambda(c.lambda), per_dt(1 / c.dt), per_dt2(1 / (c.dt * c.dt)), factor(0.5 / (c.dt * c.dt)) {}
 };
 
 // The bond vectors of a block, and its atoms as they come: in a row only where there is a box.
 template <bool boxed, class Place>
-HOL_INLINE void load_positions(const SmallCall &call, const Place &place, const Newton &x, vec *atoms,
+HOL_INLINE void load_positions(const SmallCall<Place> &call, const Place &place, const Newton &x, vec *atoms,
                                Carried &carried) {
     constexpr int N = Place::bonds;
     place.fetch_next(call.r_ref);
@@ -73,7 +77,7 @@ HOL_INLINE void load_positions(const SmallCall &call, const Place &place, const 
     place.fetch_next(call.v);
     load_bonds<boxed, false>(call.box_ref, place, call.r_ref, atoms, x.b);
     load_bonds<boxed, boxed || !Place::in_row>(call.box, place, call.r, atoms, x.D);
-    if (!boxed || (W == 1 && Place::in_row && call.box.shape == Box::none)) return;
+    if ((!boxed && Place::packed) || (W == 1 && Place::in_row && call.box.shape == Box::none)) return;
     vec largest = {};  // in a box the lengths of bonds say nothing of coordinates
     HOL_UNROLL
     for (int e = 0; e < 3 * (N + 1); ++e) largest = max(largest, abs(atoms[e]));
@@ -82,10 +86,10 @@ HOL_INLINE void load_positions(const SmallCall &call, const Place &place, const 
 
 // Moves the atoms of a block. `some`: not in lanes that are `untouched`.
 template <bool uniform, bool some, class Place>
-HOL_INLINE void move_molecules(const SmallCall &call, const Place &place, const Newton &x, const vec *atoms,
+HOL_INLINE void move_molecules(const SmallCall<Place> &call, const Place &place, const Newton &x, const vec *atoms,
                                mask untouched) {
     constexpr int N = Place::bonds;
-    double *const r = call.r, *const v = call.v;
+    const auto r = call.r, v = call.v;
     vec move[vectors_of<N>] = {}, moved[vectors_of<N>];
     vec3 before = {};
     HOL_UNROLL
@@ -123,14 +127,14 @@ HOL_INLINE void move_molecules(const SmallCall &call, const Place &place, const 
 
 // The same, out of the way: it would take the registers of blocks that move as a whole.
 template <bool uniform, class Place>
-HOL_NOINLINE void move_some_molecules(const SmallCall &call, const Place &place, const Newton &x, const vec *atoms,
+HOL_NOINLINE void move_some_molecules(const SmallCall<Place> &call, const Place &place, const Newton &x, const vec *atoms,
                                       mask untouched) {
     move_molecules<uniform, true>(call, place, x, atoms, untouched);
 }
 
 // Moves the atoms of a block, but in lanes that are `untouched`, and writes its multipliers.
 template <bool uniform, class Place>
-HOL_INLINE void write_positions(const SmallCall &call, const Place &place, const Block &block, const Newton &x,
+HOL_INLINE void write_positions(const SmallCall<Place> &call, const Place &place, const Block &block, const Newton &x,
                                 const vec *atoms, mask untouched) {
     constexpr bool few = Place::bonds <= 2 || !Place::in_row;
     if (few || __builtin_expect(!any(untouched), 1)) {
@@ -142,9 +146,22 @@ HOL_INLINE void write_positions(const SmallCall &call, const Place &place, const
     if (call.lambda) store_multipliers(place, x.tau, splat(call.factor) / block.unit, call.lambda);
 }
 
+// So many blocks in a row, all of whose molecules were right, say that the next ones may be, too. After a single one the
+// guess would often be wrong where the tolerance is about as large as what a step leaves.
+constexpr int enough_right = 2;
+
 template <bool uniform, bool boxed, class Place>
 HOL_NOINLINE int64_t pass_over_right_ones(const PositionsCall &, const Unit &, const Block &, int64_t first,
                                           int64_t end);
+
+// Columns are read once: their largest coordinate is known.
+template <class Place, class Array>
+HOL_INLINE Source source_of(const Place &place, const Array &r, const Box &box) {
+    if constexpr (Place::packed)
+        return place.source(r, box);
+    else
+        return {&box};
+}
 
 // How many molecules the next block has; 0: none is left. A look at all loose ones beforehand took a tenth of the time.
 template <class Place>
@@ -178,17 +195,33 @@ HOL_INLINE bool solve_molecules(const Block &block, Newton &x, const PositionsCa
            !any(coarse_moves<all, N>(block, x, carried, out.converged, coarse_part));
 }
 
+// Notes the worst bond of a block for the report. Few blocks have one that is worse than what was before.
+template <class Place>
+HOL_NOINLINE void note_worst_of(const PositionsCall &call, const Place &place, Block &block, const Newton &x, vec error,
+                                Tally &tally) {
+    for (int i = 0; i < W; ++i) block.chain[i] = place.chain_of(i);
+    note_worst(block, x, call, first_lanes(W), error, tally);
+}
+template <class Place>
+HOL_INLINE void note_block(const PositionsCall &call, const Place &place, Block &block, const Newton &x,
+                           const Outcome &out, Tally &tally) {
+    if (tally.worst_chain >= 0 && !any(~less(out.error, splat(tally.worst)))) return;
+    const Newton copy = x;
+    note_worst_of(call, place, block, copy, out.error, tally);
+}
+
 // Single bonds, two blocks at a time: while one waits for its root and its quotient, the other is worked on. Ends
 // before a pair of blocks of which one needs more than this.
 template <class Place, bool uniform, bool boxed>
-HOL_NOINLINE int64_t pairs_of_single_bonds(const PositionsCall &call, const Unit &unit, const Block &given,
-                                           int64_t first, Tally &tally) {
-    const SmallCall arrays(call);
+HOL_NOINLINE int64_t pairs_of_single_bonds(const PositionsCall &call, const Unit &unit, Block &given, int64_t first,
+                                           Tally &tally) {
+    const SmallCall<Place> arrays(call);
     vec memory[2][small_scratch<1>];
     Arena arena_a(reinterpret_cast<double *>(memory[0]), 1), arena_b(reinterpret_cast<double *>(memory[1]), 1);
     Newton x_a(1, arena_a), x_b(1, arena_b);
     SmallNewton<Place, uniform> a(unit, given, x_a), b(unit, given, x_b);
     const int64_t end = Place::end(unit, first);
+    int right = 0;
     for (; end - first >= 2 * W; first += 2 * W) {
         const Place at_a(unit, first, W), at_b(unit, first + W, W);
         const Source r_a = at_a.source(arrays.r, call.box), r_b = at_b.source(arrays.r, call.box);
@@ -203,10 +236,19 @@ HOL_NOINLINE int64_t pairs_of_single_bonds(const PositionsCall &call, const Unit
                 coarse_moves<all, 1>(a.block, x_a, carried_a, out_a.converged, coarse_part) |
                 coarse_moves<all, 1>(b.block, x_b, carried_b, out_b.converged, coarse_part)))
             break;
+        if (call.report) {
+            note_block(call, at_a, given, x_a, out_a, tally);
+            note_block(call, at_b, given, x_b, out_b, tally);
+        }
         write_positions<uniform>(arrays, at_a, a.block, x_a, atoms_a, out_a.untouched);
         write_positions<uniform>(arrays, at_b, b.block, x_b, atoms_b, out_b.untouched);
+        if (__builtin_expect(call.virial, 0)) {
+            count_virial<1>(x_a.b, x_a.tau, W, splat(arrays.per_dt2) / a.block.unit, tally);
+            count_virial<1>(x_b.b, x_b.tau, W, splat(arrays.per_dt2) / b.block.unit, tally);
+        }
         count_moved(tally, n_moved(out_a, W) + n_moved(out_b, W), 1);
-        if (__builtin_expect(bits(out_a.untouched & out_b.untouched) == all_lanes, 0))
+        right = bits(out_a.untouched & out_b.untouched) == all_lanes ? right + 1 : 0;
+        if (__builtin_expect(right >= enough_right, 0) && !call.report)
             first = pass_over_right_ones<uniform, boxed, Place>(call, unit, given, first + 2 * W, end) - 2 * W;
     }
     return first;
@@ -217,31 +259,30 @@ template <class Place, bool uniform, bool boxed>
 HOL_NOINLINE int64_t positions_of_molecules(const PositionsCall &call, const Unit &unit, Block &given, int64_t first,
                                             Tally &tally) {
     constexpr int N = Place::bonds;
-    const SmallCall arrays(call);
+    const SmallCall<Place> arrays(call);
     vec memory[small_scratch<N>];
     Arena arena(reinterpret_cast<double *>(memory), N);
     Newton x(N, arena);
     SmallNewton<Place, uniform> newton(unit, given, x);
     const Block &block = newton.block;
     const int64_t end = Place::loose ? unit.count : Place::end(unit, first);
+    int right = 0;
     for (int64_t n; (n = next_block<Place>(unit, first, end)) > 0; first += n) {
         const Place place(unit, first, n);
         newton.take(place, x);
-        const Source r = place.source(arrays.r, call.box);
+        const Source r = source_of(place, arrays.r, call.box);
         Carried carried(block, x, call, r);
         vec atoms[vectors_of<N>];
         Outcome out;
         load_positions<boxed>(arrays, place, x, atoms, carried);
         if (!solve_molecules<uniform, N>(block, x, call, carried, out)) break;
-        if (call.report) {
-            Block &reported = Place::in_row ? given : newton.masses.own;
-            for (int i = 0; i < W; ++i) reported.chain[i] = place.chain_of(i);
-            const Newton copy = x;
-            note_worst(reported, copy, call, first_lanes(W), out.error, tally);
-        }
+        if (call.report) note_block(call, place, Place::alike ? given : newton.masses.own, x, out, tally);
         write_positions<uniform>(arrays, place, block, x, atoms, out.untouched);
+        if (__builtin_expect(call.virial, 0))
+            count_virial<N>(x.b, x.tau, n, splat(arrays.per_dt2) / block.unit, tally);
         count_moved(tally, n_moved(out, n), out.solves);
-        if (!Place::loose && __builtin_expect(bits(out.untouched) == all_lanes, 0) && !call.report)
+        right = bits(out.untouched) == all_lanes ? right + 1 : 0;
+        if (!Place::loose && __builtin_expect(right >= enough_right, 0) && !call.report)
             first = pass_over_right_ones<uniform, boxed, Place>(call, unit, given, first + n, end) - n;
     }
     return first;
@@ -254,14 +295,14 @@ HOL_NOINLINE int64_t pass_over_right_ones(const PositionsCall &call, const Unit 
                                           int64_t first, int64_t end) {
     constexpr int N = Place::bonds;
     constexpr Same all = same_if(uniform);
-    const SmallCall arrays(call);
+    const SmallCall<Place> arrays(call);
     vec memory[small_scratch<N>];
     Arena arena(reinterpret_cast<double *>(memory), N);
     Newton x(N, arena);
     SmallNewton<Place, uniform> newton(unit, given, x);
     for (int64_t n; (n = Place::next(first, end)) > 0; first += n) {
         const Place place(unit, first, n);
-        const Source r = place.source(arrays.r, call.box);
+        const Source r = source_of(place, arrays.r, call.box);
         Carried carried(newton.block, x, call, r);
         vec atoms[vectors_of<N>], worst = {}, sum = {};
         load_positions<boxed>(arrays, place, x, atoms, carried);
@@ -277,20 +318,32 @@ HOL_NOINLINE int64_t pass_over_right_ones(const PositionsCall &call, const Unit 
     return first;
 }
 
-static inline int64_t small_positions(const PositionsCall &call, const Unit &unit, Block &block, int64_t first,
-                                      Tally &tally) {
-    if (!call.r.packed || !call.r_ref.packed || (call.v.x && !call.v.packed) || call.virial || call.guess) return first;
-    if (unit.lanes[unit.regular ? 0 : first].n_bonds == 2 && !tries_two_bonds(call)) return first;
-    const bool has_box = call.box.shape != Box::none || call.box_ref.shape != Box::none;
-    return any_molecules(unit, block, first, has_box, !unit.lanes[0].length, [&](auto place, auto uniform, auto boxed) {
-        typedef typename decltype(place)::type Place;
-        if constexpr (Place::in_row && Place::bonds == 1 && W > 1)
-            if (!call.report) first = pairs_of_single_bonds<Place, uniform, boxed>(call, unit, block, first, tally);
-        return positions_of_molecules<Place, uniform, boxed>(call, unit, block, first, tally);
-    });
+// Bonds of chains that are read from columns: of longer ones copies are a small part of the work.
+constexpr int most_in_columns = 2;
+
+static bool reads_columns(const PositionsCall &call) {
+    return is_in_columns(call.r) && is_in_columns(call.r_ref) && (!call.v.x || is_in_columns(call.v)) && !call.guess;
 }
 
-void positions(const PositionsCall &call, const Unit &unit, double *scratch, Tally &tally) {
+static inline int64_t small_positions(const PositionsCall &call, const Unit &unit, Block &block, int64_t first,
+                                      Tally &tally) {
+    if (call.guess) return first;
+    if (unit.lanes[unit.regular ? 0 : first].n_bonds == 2 && !tries_two_bonds(call)) return first;
+    const bool packed = call.r.packed && call.r_ref.packed && (!call.v.x || call.v.packed);
+    const bool has_box = call.box.shape != Box::none || call.box_ref.shape != Box::none;
+    const bool one_length = !unit.lanes[0].length;
+    const auto kernel = [&](auto place, auto uniform, auto boxed) {
+        typedef typename decltype(place)::type Place;
+        if constexpr (Place::in_row && Place::bonds == 1 && W > 1)
+            first = pairs_of_single_bonds<Place, uniform, boxed>(call, unit, block, first, tally);
+        return positions_of_molecules<Place, uniform, boxed>(call, unit, block, first, tally);
+    };
+    if (packed) return any_molecules(unit, block, first, has_box, one_length, kernel);
+    return reads_columns(call) ? molecules_in_columns<most_in_columns>(unit, block, first, has_box, one_length, kernel)
+                               : first;
+}
+
+static void positions_of_blocks(const PositionsCall &call, const Unit &unit, double *scratch, Tally &tally) {
     BondLengths lengths = {};
     const double *begin = nullptr;
     double *end = nullptr;
@@ -308,6 +361,22 @@ void positions(const PositionsCall &call, const Unit &unit, double *scratch, Tal
                 Positions(block, lane, call, lengths, arena, tally).solve();
         },
         small_positions, false);
+}
+
+// Arrays that are not packed. False if nothing has been done.
+static bool positions_in_parts(const PositionsCall &call, const Unit &unit, double *scratch, Tally &tally) {
+    if (reads_columns(call) && fit_columns<most_in_columns>(unit, false)) return false;
+    const PartArray<PositionsCall> arrays[] = {{&PositionsCall::r_ref, true, false},
+                                               {&PositionsCall::r, true, true},
+                                               {&PositionsCall::v, true, true}};
+    return in_packed_parts(call, unit, arrays, true, tally, [=](const PositionsCall &c, const Unit &u, Tally &own) {
+        positions_of_blocks(c, u, scratch, own);
+    });
+}
+
+void positions(const PositionsCall &call, const Unit &unit, double *scratch, Tally &tally) {
+    if (!call.r.packed && positions_in_parts(call, unit, scratch, tally)) return;
+    positions_of_blocks(call, unit, scratch, tally);
 }
 
 }  // namespace holonomic::HOL_ISA

@@ -5,6 +5,7 @@
 #include "core/kernels/memory/load.hpp"
 #include "core/kernels/memory/open.hpp"
 #include "core/kernels/memory/outputs.hpp"
+#include "core/kernels/memory/parts.hpp"
 #include "core/kernels/memory/small.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
@@ -105,11 +106,10 @@ HOL_NOINLINE vec stretching_of(const double *strain, vec3 d) { return stretching
 
 // Does molecules from `first` on. Returns the first one that is not done. `given`: the block of a regular unit.
 template <class Place, bool uniform, bool boxed>
-static int64_t velocities_of_molecules(const VelocitiesCall &call, const Unit &unit, const Block &given,
-                                       int64_t first) {
+static int64_t velocities_of_molecules(const VelocitiesCall &call, const Unit &unit, const Block &given, int64_t first,
+                                       Tally &tally) {
     constexpr int N = Place::bonds;
-    const double *const r = base_of(call.r);
-    double *const v = base_of(call.v);
+    const auto r = Place::array(call.r), v = Place::array(call.v);
     BlockMasses<Place> masses(given);
     const Block &block = masses.block;
     const int64_t end = Place::end(unit, first);
@@ -122,9 +122,9 @@ static int64_t velocities_of_molecules(const VelocitiesCall &call, const Unit &u
         place.fetch_next(v);
         load_bonds<boxed, false>(call.box, place, r, elements, D);
         load_molecules(place, v, elements);
-        const Source source = place.source(r, call.box);
+        const auto source = place.source(r, call.box);
         const Projection x({D, t, L, pivots}, reinterpret_cast<vec3 *>(elements), left);
-        Sweep<uniform, true> sweep{block, source, x.s};
+        Sweep<uniform, true, decltype(place.source(r, call.box))> sweep{block, source, x.s};
         HOL_UNROLL
         for (int k = 0; k < N; ++k) {
             vec b = rate_of(D[k], x.v[k], x.v[k + 1]);
@@ -147,21 +147,39 @@ static int64_t velocities_of_molecules(const VelocitiesCall &call, const Unit &u
         for (int k = N - 1; k >= 0; --k) x.v[k + 1] = correction.step(k);
         x.v[0] = correction.finish();
         if (call.lambda) store_multipliers(place, t, 0.5 * block.mass, call.lambda);
+        if (__builtin_expect(call.virial, 0)) count_virial<N>(D, t, n, block.mass, tally);
         store_molecules<write_>(place, elements, v);
     }
     return first;
 }
 
-static int64_t small_velocities(const VelocitiesCall &call, const Unit &unit, Block &block, int64_t first, Tally &) {
-    if (!call.r.packed || !call.v.packed || call.virial) return first;
-    return any_molecules(
-        unit, block, first, call.box.shape != Box::none, true, [&](auto place, auto uniform, auto boxed) {
-            typedef typename decltype(place)::type Place;
-            return velocities_of_molecules < Place, uniform && Place::in_row, boxed > (call, unit, block, first);
-        });
+static bool reads_columns(const VelocitiesCall &call) {
+    return is_in_columns(call.r) && is_in_columns(call.v);
+}
+
+static int64_t small_velocities(const VelocitiesCall &call, const Unit &unit, Block &block, int64_t first,
+                                Tally &tally) {
+    const bool boxed = call.box.shape != Box::none;
+    const auto kernel = [&](auto place, auto uniform, auto in_box) {
+        typedef typename decltype(place)::type Place;
+        return velocities_of_molecules < Place, uniform && Place::alike, in_box > (call, unit, block, first, tally);
+    };
+    if (call.r.packed && call.v.packed) return any_molecules(unit, block, first, boxed, true, kernel);
+    return reads_columns(call) ? molecules_in_columns(unit, block, first, boxed, true, kernel) : first;
+}
+
+// Arrays that are not packed. False if nothing has been done.
+static bool velocities_in_parts(const VelocitiesCall &call, const Unit &unit, double *scratch, Tally &tally) {
+    if (reads_columns(call) && fit_columns(unit, call.box.shape != Box::none)) return false;
+    const PartArray<VelocitiesCall> arrays[] = {{&VelocitiesCall::r, true, false}, {&VelocitiesCall::v, true, true}};
+    return in_packed_parts(call, unit, arrays, false, tally,
+                           [=](const VelocitiesCall &c, const Unit &u, Tally &own) {
+                               for_each_block(c, u, scratch, own, velocities_block, small_velocities);
+                           });
 }
 
 void velocities(const VelocitiesCall &call, const Unit &unit, double *scratch, Tally &tally) {
+    if (!call.r.packed && velocities_in_parts(call, unit, scratch, tally)) return;
     for_each_block(call, unit, scratch, tally, velocities_block, small_velocities);
 }
 

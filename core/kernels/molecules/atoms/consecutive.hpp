@@ -3,61 +3,15 @@
 #pragma once
 
 #include "core/kernels/isa/choose.hpp"
+#include "core/kernels/memory/columns.hpp"
 #include "core/kernels/molecules/atoms/atoms.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 
 #if HOL_LANES >= 4 && defined(__AVX2__)
-// Two elements of four lanes, from element k of their rows.
-HOL_INLINE void read_pair(const double *const *p, long k, quad &first, quad &second) {
-    quad of[2];
-    HOL_UNROLL
-    for (int i = 0; i < 2; ++i)
-        of[i] = _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_loadu_pd(p[i] + k)), _mm_loadu_pd(p[i + 2] + k), 1);
-    first = _mm256_unpacklo_pd(of[0], of[1]);
-    second = _mm256_unpackhi_pd(of[0], of[1]);
-}
-
-// Element e of four lanes; what is left of the last row of four is read and written two by two, then alone.
-template <int n>
-HOL_INLINE void read_elements(const double *const *p, quad *e) {
-    constexpr int fours = n / 4 * 4, twos = n / 2 * 2;
-    HOL_UNROLL
-    for (int j = 0; j < fours; j += 4) {
-        HOL_UNROLL
-        for (int i = 0; i < 4; ++i) e[j + i] = _mm256_loadu_pd(p[i] + j);
-        transpose(e + j);
-    }
-    if (fours < twos) read_pair(p, fours, e[fours], e[twos - 1]);
-    if (twos < n) e[n - 1] = quad{p[0][n - 1], p[1][n - 1], p[2][n - 1], p[3][n - 1]};
-}
-
-// What is left of rows is handed to two(lane, element, numbers) and one(lane, element, number).
-template <int n, class Two, class One>
-HOL_INLINE void for_each_left(const quad *e, const Two &two, const One &one) {
-    constexpr int fours = n / 4 * 4, twos = n / 2 * 2;
-    if (fours < twos) {
-        const quad of[2] = {_mm256_unpacklo_pd(e[fours], e[twos - 1]), _mm256_unpackhi_pd(e[fours], e[twos - 1])};
-        HOL_UNROLL
-        for (int i = 0; i < 4; ++i)
-            two(i, fours, i < 2 ? _mm256_castpd256_pd128(of[i % 2]) : _mm256_extractf128_pd(of[i % 2], 1));
-    }
-    HOL_UNROLL
-    for (int i = 0; i < 4 && twos < n; ++i) one(i, n - 1, e[n - 1][i]);
-}
-
-template <int n>
-HOL_INLINE void write_elements(double *const *p, quad *e) {
-    HOL_UNROLL
-    for (int j = 0; j < n / 4; ++j) {
-        transpose(e + 4 * j);
-        HOL_UNROLL
-        for (int i = 0; i < 4; ++i) _mm256_storeu_pd(p[i] + 4 * j, e[4 * j + i]);
-    }
-    for_each_left<n>(
-        e, [&](int i, int c, double2 x) HOL_FORCED { _mm_storeu_pd(p[i] + c, x); },
-        [&](int i, int c, double x) HOL_FORCED { p[i][c] = x; });
-}
+using HOL_ISA::read_elements;
+using HOL_ISA::read_pair;
+using HOL_ISA::write_elements;
 
 // Adds element e, used up, to r, and factor times it to v; either may be nullptr.
 template <int n>
@@ -147,9 +101,26 @@ HOL_INLINE void add_elements(double *const *r, double *const *v, double factor, 
     }
 }
 
+// Of columns, from atom `first` of the block on.
+template <int n, class V>
+HOL_INLINE void move_columns(const PositionsCall &call, int64_t first, const Vector3<V> *shift) {
+    const V per_dt = Width<V>::all(1 / call.dt);
+    Vector3<V> a[n];
+    read_columns<n>(Columns(call.r), first, a);
+    HOL_UNROLL
+    for (int k = 0; k < n; ++k) a[k] = a[k] + shift[k];
+    write_columns<n>(Columns(call.r), first, a);
+    if (!call.v.x) return;
+    read_columns<n>(Columns(call.v), first, a);
+    HOL_UNROLL
+    for (int k = 0; k < n; ++k) a[k] = add_times(a[k], per_dt, shift[k]);
+    write_columns<n>(Columns(call.v), first, a);
+}
+
 // Reading and writing that is compiled into what works on the atoms: for molecules one behind the other, for rows in
-// order and for lists. anywhere: a call, which finds the layout.
-enum Inlined { adjacent, in_order, listed, anywhere };
+// order and for lists. anywhere: a call, which finds the layout. in_columns: adjacent, but x, y and z apart; the lanes'
+// layout is `elements` then.
+enum Inlined { adjacent, in_order, listed, in_columns, anywhere };
 
 // Where atom k of a molecule of n stands.
 template <Inlined where, int n, class V>
@@ -179,6 +150,8 @@ HOL_INLINE void read_all(const AtomArray &array, const Atoms<V> &at, Vector3<V> 
         read_some<n>(array, at, read);
         HOL_UNROLL
         for (int k = 0; k < n; ++k) atoms[k] = read[k];
+    } else if (where == in_columns) {
+        read_columns<n>(Columns(array), at.first[0], atoms);
     } else if (where == listed) {
         HOL_UNROLL
         for (int k = 0; k < n; ++k) {
@@ -207,6 +180,7 @@ HOL_INLINE void write_copy(const AtomArray &array, const Atoms<V> &at, const Vec
 template <Inlined where, int n, class V>
 HOL_INLINE void write_all(const AtomArray &array, const Atoms<V> &at, Vector3<V> *atoms, unsigned which) {
     if (where == anywhere || __builtin_expect(which != all_of<V>, 0)) return write_copy<n>(array, at, atoms, which);
+    if (where == in_columns) return write_columns<n>(Columns(array), at.first[0], atoms);
     double *p[Width<V>::lanes];
     if (where == listed) {
         HOL_UNROLL
@@ -253,6 +227,7 @@ HOL_INLINE void move_all(const PositionsCall &call, const Atoms<V> &at, Vector3<
         for (int k = 0; k < n; ++k) copy[k] = shift[k];
         return move_some<n>(call, at, copy, which);
     }
+    if (where == in_columns) return move_columns<n>(call, at.first[0], shift);
     double *r[Width<V>::lanes], *v[Width<V>::lanes];
     rows_of_all<where, n>(call.r, at, r);
     if (!call.v.x) return add_elements<3 * n>(r, nullptr, 0, shift);
@@ -266,7 +241,7 @@ HOL_INLINE void write_three(double *out, const Atoms<V> &at, const Vector3<V> &v
     if (__builtin_expect(which == all_of<V>, 1)) {
         double *p[Width<V>::lanes];
         HOL_UNROLL
-        for (int i = 0; i < at.lanes; ++i) p[i] = where == adjacent ? out + at.bond[0] + 3 * i : out + at.bond[i];
+        for (int i = 0; i < at.lanes; ++i) p[i] = where == adjacent || where == in_columns ? out + at.bond[0] + 3 * i : out + at.bond[i];
         return write_rows(p, value);
     }
     for (int i = 0; i < at.lanes; ++i) {

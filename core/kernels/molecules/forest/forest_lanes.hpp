@@ -120,14 +120,26 @@ struct ForestAtom {
     }
 
 private:
+    template <class T>
+    HOL_STATIC vec component_of(const char *p, int64_t stride, const int64_t *number) {
+        vec a = {};
+        if (!p) return a;
+#if HOL_LANES == 4
+        return vec{element<T>(p + number[0] * stride), element<T>(p + number[1] * stride),
+                   element<T>(p + number[2] * stride), element<T>(p + number[3] * stride)};
+#else
+        for (int i = 0; i < W; ++i) a[i] = element<T>(p + number[i] * stride);
+        return a;
+#endif
+    }
+    template <class T>
+    HOL_STATIC vec3 read_as(const AtomArray &array, const int64_t *number) {
+        const int64_t stride = array.stride;
+        return {component_of<T>(array.x, stride, number), component_of<T>(array.y, stride, number),
+                component_of<T>(array.z, stride, number)};
+    }
     __attribute__((noinline)) static void read_anywhere(const AtomArray &array, const int64_t *number, vec3 &a) {
-        for (int i = 0; i < W; ++i) {
-            double one[3];
-            read_row(array, number[i], one);
-            a.x[i] = one[0];
-            a.y[i] = one[1];
-            a.z[i] = one[2];
-        }
+        a = array.holds_floats() ? read_as<float>(array, number) : read_as<double>(array, number);
     }
 };
 

@@ -189,4 +189,20 @@ HOL_INLINE void add_elements(double *const *r, double *const *v, double factor, 
     graph::add_elements<n>(r + W, v ? v + W : nullptr, factor, b);
 }
 
+template <int n>
+HOL_INLINE void read_columns(const Columns &from, int64_t first, Vector3<Twin> *x) {
+    vec3 a[n], b[n];
+    HOL_ISA::read_columns<n>(from, first, a);
+    HOL_ISA::read_columns<n>(from, first + W * n, b);
+    HOL_UNROLL
+    for (int k = 0; k < n; ++k) x[k] = side_by_side(a[k], b[k]);
+}
+template <int n>
+HOL_INLINE void write_columns(const Columns &to, int64_t first, const Vector3<Twin> *x) {
+    vec3 a[n] = {}, b[n] = {};
+    halves<n>(x, a, b);
+    HOL_ISA::write_columns<n>(to, first, a);
+    HOL_ISA::write_columns<n>(to, first + W * n, b);
+}
+
 }  // namespace holonomic::HOL_ISA

@@ -82,8 +82,8 @@ struct TriangleWork {
     }
 
     // Molecules of one kind, one behind the other, from number `first` on as long as there are enough of them for all
-    // lanes of V; returns how many are done.
-    template <class V>
+    // lanes of V; returns how many are done. where: adjacent or in_columns.
+    template <Inlined where, class V>
     __attribute__((noinline)) int64_t run(const MoleculeUnit &unit, int64_t first, double *scratch) {
         constexpr int lanes = Width<V>::lanes;
         constexpr unsigned all = (1u << lanes) - 1;
@@ -93,29 +93,40 @@ struct TriangleWork {
         for (int i = 0; i < lanes; ++i) lane[i] = molecules.get(i);
         TriangleKind<V> kind;
         kind.set(lane, lanes, Verb::with_lengths);
-        Atoms<V> at(lane, lanes, true);
+        Atoms<V> at(lane, lanes, where == adjacent);
         for (; molecules.first + lanes <= unit.count; molecules.first += lanes) {
-            const unsigned good = verb.template solve<adjacent>(molecules, lanes, at, kind);
+            const unsigned good = verb.template solve<where>(molecules, lanes, at, kind);
             if (__builtin_expect(good != all, 0)) solve_rest(*this, molecules, all & ~good, scratch);
             at.advance(3, 3);
         }
         return molecules.first;
     }
+    template <Inlined where>
     int64_t run(const MoleculeUnit &unit, double *scratch) {
         if constexpr (small_set)
             return 0;
         else if constexpr (twins && Verb::in_steps)
-            return run<Twin>(unit, 0, scratch);  // few are left
+            return run<where, Twin>(unit, 0, scratch);  // few are left
         else
-            return run<vec>(unit, 0, scratch);
+            return run<where, vec>(unit, 0, scratch);
     }
 };
 
+// Whether triangles of a unit are read from columns where arrays are such.
+HOL_INLINE bool reads_triangles_in_columns(const MoleculeUnit &unit) {
+    return !small_set && !unit.forests && !unit.schedule->network && unit.schedule->type == Schedule::triangle &&
+           unit.regular && !unit.lanes[0].atoms;
+}
+
 template <class Verb>
-static inline void for_each_triangle(const Verb &verb, const MoleculeUnit &unit, bool packed, double *scratch) {
+static inline void for_each_triangle(const Verb &verb, const MoleculeUnit &unit, bool packed, double *scratch,
+                                     bool columns = false) {
     TriangleWork<Verb> work(verb, *unit.schedule, packed);
-    const bool in_a_row = unit.regular && packed && !unit.lanes[0].atoms;
-    const int64_t done = in_a_row && !verb.other_way() ? work.run(unit, scratch) : 0;
+    const bool in_a_row = unit.regular && !unit.lanes[0].atoms && !verb.other_way();
+    const int64_t done = !in_a_row ? 0
+                         : packed  ? work.template run<adjacent>(unit, scratch)
+                         : columns ? work.template run<in_columns>(unit, scratch)
+                                   : 0;
     if (done == unit.count) return;
     const MoleculeLane next = molecule_of(unit, done);
     NextMolecules ahead;
