@@ -18,11 +18,12 @@ export WINEDEBUG=-all WINEPREFIX=$build/wine WINEPATH="Z:$build/capi;Z:$build/fo
 cmake -S "$top" -B "$build" -DCMAKE_TOOLCHAIN_FILE="$top/cmake/mingw-w64.cmake" -DHOLONOMIC_BUILD_TESTS=ON \
     -DHOLONOMIC_TESTS_WITHOUT_CMOCKA=ON -DHOLONOMIC_TESTS_WITH_VALGRIND=OFF >"$build/log" 2>&1 || { tail -n 20 "$build/log"; exit 1; }
 targets=(holonomic check_oracle instruction_set fuzz_replay layout_c layout_cpp capi_tests)
-[ ! -d "$build/tests/fortran" ] || targets+=(holonomic_fortran tests/fortran/all)
-for name in "${targets[@]}"; do
-    cmake --build "$build" -j "${JOBS:-2}" --target "$name" >"$build/log" 2>&1 ||
+make_all() { # make_all FOLDER [OPTION...]
+    cmake --build "$1" -j "${JOBS:-2}" "${@:2}" >"$build/log" 2>&1 ||
         { grep -E 'error|undefined' "$build/log" | head -n 20; tail -n 5 "$build/log"; exit 1; }
-done
+}
+make_all "$build" --target "${targets[@]}"
+[ ! -e "$build/tests/fortran/Makefile" ] || make_all "$build/tests/fortran"
 
 # The DLLs need what Windows has, and export what the header declares.
 for dll in "$build"/capi/*.dll "$build"/fortran/*.dll; do
