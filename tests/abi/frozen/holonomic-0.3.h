@@ -682,6 +682,10 @@ HOL_API int64_t hol_chains_memory(const hol_chains *chains);
 HOL_API int hol_chains_add_linear(hol_chains *chains, int64_t n_relations, const int64_t *sizes, const int64_t *atoms,
                                   const double *coefficients, int64_t n_bonds, const int64_t *pairs,
                                   const double *lengths);
+HOL_API int hol_chains_add_linear_molecules(hol_chains *chains, int64_t n_molecules, int64_t n_atoms,
+                                            int64_t first_atom, int64_t n_relations, const int64_t *sizes,
+                                            const int64_t *atoms, const double *coefficients, int64_t n_bonds,
+                                            const int64_t *pairs, const double *lengths);
 HOL_API int hol_chains_adjustment(const hol_chains *chains, double *largest, int64_t *bond);
 HOL_API int hol_chains_implied(const hol_chains *chains, unsigned char *implied);
 HOL_API int hol_chains_set_length_tolerance(hol_chains *chains, double tolerance);
