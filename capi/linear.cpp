@@ -5,20 +5,39 @@ using holonomic::make_error;
 using holonomic::need;
 using holonomic::Status;
 
+namespace {
+
+void need_relations(const hol_chains *chains, const int64_t *sizes, const int64_t *atoms, const double *coefficients,
+                    int64_t n_bonds, const int64_t *pairs, const double *lengths) {
+    need(chains, "chains");
+    need(sizes, "sizes");
+    need(atoms, "atoms");
+    need(coefficients, "coefficients");
+    if (n_bonds < 0 || n_bonds > int64_t{1} << 30)
+        throw make_error(Status::value, "n_bonds is %lld; it must be in 0 .. 2^30", static_cast<long long>(n_bonds));
+    if (n_bonds > 0) {
+        need(pairs, "pairs");
+        need(lengths, "lengths");
+    }
+}
+
+}  // namespace
+
 int hol_chains_add_linear(hol_chains *chains, int64_t n_relations, const int64_t *sizes, const int64_t *atoms,
                           const double *coefficients, int64_t n_bonds, const int64_t *pairs, const double *lengths) {
     return guarded(__func__, [&] {
-        need(chains, "chains");
-        need(sizes, "sizes");
-        need(atoms, "atoms");
-        need(coefficients, "coefficients");
-        if (n_bonds < 0 || n_bonds > int64_t{1} << 30)
-            throw make_error(Status::value, "n_bonds is %lld; it must be in 0 .. 2^30",
-                             static_cast<long long>(n_bonds));
-        if (n_bonds > 0) {
-            need(pairs, "pairs");
-            need(lengths, "lengths");
-        }
+        need_relations(chains, sizes, atoms, coefficients, n_bonds, pairs, lengths);
         chains->chains.add_linear(n_relations, sizes, atoms, coefficients, n_bonds, pairs, lengths);
+    });
+}
+
+int hol_chains_add_linear_molecules(hol_chains *chains, int64_t n_molecules, int64_t n_atoms, int64_t first_atom,
+                                    int64_t n_relations, const int64_t *sizes, const int64_t *atoms,
+                                    const double *coefficients, int64_t n_bonds, const int64_t *pairs,
+                                    const double *lengths) {
+    return guarded(__func__, [&] {
+        need_relations(chains, sizes, atoms, coefficients, n_bonds, pairs, lengths);
+        chains->chains.add_linear_molecules(n_molecules, n_atoms, first_atom, n_relations, sizes, atoms, coefficients,
+                                            n_bonds, pairs, lengths);
     });
 }

@@ -94,6 +94,17 @@ module holonomic_c_molecules
          integer(c_int) :: status
       end function
 
+      function hol_chains_add_linear_molecules(chains, n_molecules, n_atoms, first_atom, n_relations, sizes, atoms, &
+         coefficients, n_bonds, pairs, lengths) bind(c) result(status)
+         import :: c_int, c_int64_t, c_ptr
+         type(c_ptr), value :: chains
+         integer(c_int64_t), value :: n_molecules, n_atoms, first_atom, n_relations
+         type(c_ptr), value :: sizes, atoms, coefficients
+         integer(c_int64_t), value :: n_bonds
+         type(c_ptr), value :: pairs, lengths
+         integer(c_int) :: status
+      end function
+
 #define NAME hol_chains_set_lengths
 #define POINTERS chains, lengths
 #include "c_function.inc"

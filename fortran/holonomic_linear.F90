@@ -3,7 +3,7 @@
 module holonomic_linear
    use, intrinsic :: iso_c_binding, only: c_int64_t, c_loc, c_null_ptr, c_ptr
    use, intrinsic :: iso_fortran_env, only: int32, int64, real32, real64
-   use holonomic_c, only: hol_chains_add_linear, HOL_ERR_VALUE
+   use holonomic_c, only: hol_chains_add_linear, hol_chains_add_linear_molecules, HOL_ERR_VALUE
    use holonomic_rigid, only: chain_set_rigid
    use holonomic_status, only: decimal, failure, settle
    implicit none
@@ -13,9 +13,15 @@ module holonomic_linear
    type, extends(chain_set_rigid) :: chain_set_linear
    contains
       procedure, private :: add_linear_32_32, add_linear_32_64, add_linear_64_32, add_linear_64_64
+      procedure, private :: add_linear_molecules_32_32, add_linear_molecules_32_64, add_linear_molecules_64_32, &
+         add_linear_molecules_64_64
       ! add_linear(atoms, coefficients, [sizes], [bonds, lengths]): a relation among these atoms, whose coefficients add up
       ! to 0; with sizes several, one after the other. bonds(2, n_bonds) are those of the molecules that relations make.
       generic :: add_linear => add_linear_32_32, add_linear_32_64, add_linear_64_32, add_linear_64_64
+      ! add_linear_molecules(n_molecules, n_atoms, first_atom, atoms, coefficients, [sizes], [bonds, lengths]): the same in
+      ! each of these molecules, whose atoms are counted from 1.
+      generic :: add_linear_molecules => add_linear_molecules_32_32, add_linear_molecules_32_64, &
+         add_linear_molecules_64_32, add_linear_molecules_64_64
    end type
 
 contains
@@ -23,27 +29,33 @@ contains
 #define INTEGERS 32
 #define REALS 32
 #define ADD_LINEAR add_linear_32_32
+#define ADD_LINEAR_MOLECULES add_linear_molecules_32_32
 #include "linear.inc"
 #define INTEGERS 32
 #define REALS 64
 #define ADD_LINEAR add_linear_32_64
+#define ADD_LINEAR_MOLECULES add_linear_molecules_32_64
 #include "linear.inc"
 #define INTEGERS 64
 #define REALS 32
 #define ADD_LINEAR add_linear_64_32
+#define ADD_LINEAR_MOLECULES add_linear_molecules_64_32
 #include "linear.inc"
 #define INTEGERS 64
 #define REALS 64
 #define ADD_LINEAR add_linear_64_64
+#define ADD_LINEAR_MOLECULES add_linear_molecules_64_64
 #include "linear.inc"
 
-   subroutine add_relations(self, atoms, coefficients, sizes, bonds, lengths, stat, errmsg)
+   ! In molecules(3): their number, their atoms and the first one; or once.
+   subroutine add_relations(self, atoms, coefficients, sizes, bonds, lengths, molecules, stat, errmsg)
       class(chain_set_linear), intent(inout) :: self
       integer(int64), intent(in), contiguous, target :: atoms(:)
       real(real64), intent(in), contiguous, target :: coefficients(:)
       integer(int64), intent(in), optional :: sizes(:)
       integer(int64), intent(in), contiguous, optional, target :: bonds(:, :)
       real(real64), intent(in), contiguous, optional, target :: lengths(:)
+      integer(int64), intent(in), optional :: molecules(3)
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       integer(int64), allocatable, target :: relations(:)
@@ -71,10 +83,19 @@ contains
             of_pairs = c_loc(lengths)
          end if
       end if
-      if (problem%none()) &
+      if (problem%none() .and. present(molecules)) then
+         call problem%ask(hol_chains_add_linear_molecules(self%c_handle(), molecules(1), molecules(2), molecules(3), &
+                                                          size(relations, kind=c_int64_t), c_loc(relations), &
+                                                          c_loc(atoms), c_loc(coefficients), n_bonds, pairs, of_pairs))
+      else if (problem%none()) then
          call problem%ask(hol_chains_add_linear(self%c_handle(), size(relations, kind=c_int64_t), c_loc(relations), &
                                                 c_loc(atoms), c_loc(coefficients), n_bonds, pairs, of_pairs))
-      call settle(problem, "add_linear", stat, errmsg)
+      end if
+      if (present(molecules)) then
+         call settle(problem, "add_linear_molecules", stat, errmsg)
+      else
+         call settle(problem, "add_linear", stat, errmsg)
+      end if
    end subroutine
 
 end module

@@ -1,5 +1,5 @@
-/* Distances as topologies have them: CO2 with three decimals, all bonds and angles of ethane; and two pairs with one
- * centre. */
+/* Distances as topologies have them: CO2 with three decimals, all bonds and angles of ethane; two pairs with one
+ * centre, and two pairs with a site in the middle. */
 #include <math.h>
 #include "check.h"
 
@@ -11,7 +11,9 @@ static double distance(const double *a, const double *b)
 
 int main(void)
 {
-    const double mass[15] = {12, 12, 1, 1, 1, 1, 1, 1, 16, 12, 16, 1, 2, 3, 4};
+    const double mass[21] = {12, 12, 1, 1, 1, 1, 1, 1, 16, 12, 16, 1, 2, 3, 4, 1, 1, 0, 1, 1, 0},
+                 middle[3] = {0.5, 0.5, -1};
+    const int64_t three = 3, site[3] = {0, 1, 2};
     const int64_t co2[6] = {8, 9, 9, 10, 8, 10}, four = 4, pairs[4] = {11, 12, 13, 14};
     const double rounded[3] = {1.162, 1.162, 2.325}, one_centre[4] = {1, 1, -1, -1};
     double r[8][3] = {{0, 0, 0}, {1.54, 0, 0}}, length[19], largest;
@@ -19,7 +21,7 @@ int main(void)
     unsigned char implied[22];
     hol_chains *chains = NULL;
 
-    ok(hol_chains_create(15, mass, &chains));
+    ok(hol_chains_create(21, mass, &chains));
 
     for (int h = 0; h < 6; ++h) {
         const double turn = 1.0471975511965976 * (2 * h + h / 3);
@@ -34,7 +36,7 @@ int main(void)
             ethane[2 * n] = i, ethane[2 * n++ + 1] = j;
         }
     ok(hol_chains_add_bonds(chains, n, ethane, length));
-    shows("degrees of freedom", (double)hol_chains_degrees_of_freedom(chains, 3), 45 - 17);
+    shows("degrees of freedom", (double)hol_chains_degrees_of_freedom(chains, 3), 57 - 17);
 
     ok(hol_chains_set_length_tolerance(chains, 1e-3));
     ok(hol_chains_add_bonds(chains, 3, co2, rounded)); /* straight, but for the decimals */
@@ -46,7 +48,10 @@ int main(void)
     shows("implied by others", (double)n_implied, (double)(n - 17));
 
     ok(hol_chains_add_linear(chains, 1, &four, pairs, one_centre, 0, NULL, NULL));
-    shows("degrees of freedom", (double)hol_chains_degrees_of_freedom(chains, 3), 45 - 17 - 4 - 3);
+    shows("degrees of freedom", (double)hol_chains_degrees_of_freedom(chains, 3), 57 - 17 - 4 - 3);
+
+    ok(hol_chains_add_linear_molecules(chains, 2, 3, 15, 1, &three, site, middle, 0, NULL, NULL));
+    shows("sites have none of their own", (double)hol_chains_degrees_of_freedom(chains, 3), 57 - 17 - 4 - 3);
     hol_chains_destroy(chains);
     return 0;
 }

@@ -20,6 +20,8 @@ _BONDS: Dict[str, Callable[..., Tuple[np.ndarray, np.ndarray]]] = {
     "add_chains": lambda n, n_bonds, lengths, first: (
         _repeated(np.arange(n_bonds)[:, None] + np.arange(2), n, n_bonds + 1, first), np.tile(lengths, n)),
     "add_linear": lambda atoms, coefficients, bonds, lengths: (bonds, lengths),
+    "add_linear_molecules": lambda n, n_atoms, atoms, coefficients, bonds, lengths, first: (
+        _repeated(bonds, n, n_atoms, first), np.tile(lengths, n)),
     "add_rigid": lambda bodies, places, bonds, lengths: (bonds, lengths),
     "add_rigid_molecules": lambda n, n_atoms, bodies, places, bonds, lengths, first: (
         _repeated(bonds, n, n_atoms, first), np.tile(lengths, n)),

@@ -204,7 +204,8 @@ class Bonds:
     def add_linear(self, atoms: Bodies, coefficients: Any, bonds: Pairs = (), lengths: Floats = ()) -> None:
         """Adds linear relations among atoms, sum_i c_i r_i = 0, and bonds of the molecules in which these are.
 
-        atoms         the atoms of each relation, a list of lists; an atom of mass 0 is a massless site
+        atoms         the atoms of each relation, a list of lists; an atom of mass 0 is a massless site, one of
+                      infinite mass is where `r` has it
         coefficients  those of each relation, a list of lists; they add up to 0
         bonds         (n, 2) integers, bonds of these molecules
         lengths       (n,) lengths, or one number for all
@@ -212,15 +213,34 @@ class Bonds:
         A site in the middle of two atoms: ``add_linear([[0, 1, 2]], [[0.5, 0.5, -1]])``; two atoms that are one point:
         ``add_linear([[0, 1]], [[1, -1]])``. docs/rigid.md.
         """
-        groups = [integers(group, "atoms") for group in atoms]
-        numbers_of = [numbers(c, len(group), "coefficients", "atom") for c, group in zip(coefficients, groups)]
-        if not groups or len(groups) != len(coefficients):
-            raise ArgumentError(f"there are atoms of {len(groups)} relations and coefficients of {len(coefficients)}")
-        sizes, all_atoms, c = np.array([len(group) for group in groups], np.int64), np.concatenate(groups), np.concatenate(numbers_of)
+        groups, numbers_of, sizes, all_atoms, c = self._relations(atoms, coefficients)
         bonds, lengths = self._at_bodies(bonds, lengths)
         ask_to_add(library.hol_chains_add_linear(self._handle, len(sizes), address(sizes), address(all_atoms), address(c),
                                                  len(bonds), address(bonds), address(lengths)))
         self._noted("add_linear", groups, numbers_of, bonds, lengths)
+
+    def add_linear_molecules(self, n_molecules: int, n_atoms: int, atoms: Bodies, coefficients: Any, bonds: Pairs = (),
+                             lengths: Floats = (), first_atom: int = 0) -> None:
+        """Adds the same relations and bonds for n_molecules molecules of n_atoms consecutive atoms each; numbers of atoms are
+        those within the molecule.
+        """
+        groups, numbers_of, sizes, all_atoms, c = self._relations(atoms, coefficients)
+        bonds, lengths = self._at_bodies(bonds, lengths)
+        n_molecules, n_atoms = integer(n_molecules, "n_molecules"), integer(n_atoms, "n_atoms")
+        first_atom = integer(first_atom, "first_atom")
+        ask_to_add(library.hol_chains_add_linear_molecules(
+            self._handle, n_molecules, n_atoms, first_atom, len(sizes), address(sizes), address(all_atoms), address(c),
+            len(bonds), address(bonds), address(lengths)))
+        self._noted("add_linear_molecules", n_molecules, n_atoms, groups, numbers_of, bonds, lengths, first_atom)
+
+    @staticmethod
+    def _relations(atoms: Any, coefficients: Any) -> Tuple[list, list, np.ndarray, np.ndarray, np.ndarray]:
+        groups = [integers(group, "atoms") for group in atoms]
+        numbers_of = [numbers(c, len(group), "coefficients", "atom") for c, group in zip(coefficients, groups)]
+        if not groups or len(groups) != len(coefficients):
+            raise ArgumentError(f"there are atoms of {len(groups)} relations and coefficients of {len(coefficients)}")
+        sizes = np.array([len(group) for group in groups], np.int64)
+        return groups, numbers_of, sizes, np.concatenate(groups), np.concatenate(numbers_of)
 
     @staticmethod
     def _bodies(bodies: Any, places: Any) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -31,6 +31,7 @@ SIGNATURES = {
     "hol_chains_add_bonds": "i plpp",
     "hol_chains_add_molecules": "i pllllpp",
     "hol_chains_add_linear": "i plppplpp",
+    "hol_chains_add_linear_molecules": "i pllllppplpp",
     "hol_chains_add_rigid": "i plppplpp",
     "hol_chains_add_rigid_molecules": "i pllllppplpp",
     "hol_chains_set_lengths": "i pp",

@@ -230,6 +230,10 @@ static void crude(hol_chains *both, const double *r)
     SUCCEEDS(hol_chains_add_linear(relations, 1, &three, site, middle, 0, NULL, NULL));
     EXPECT(hol_chains_degrees_of_freedom(relations, 3) == 6);
     hol_chains_destroy(relations);
+    SUCCEEDS(hol_chains_create(3, mass + 1, &relations));
+    SUCCEEDS(hol_chains_add_linear_molecules(relations, 1, 3, 0, 1, &three, site, middle, 0, NULL, NULL));
+    EXPECT(hol_chains_degrees_of_freedom(relations, 3) == 6);
+    hol_chains_destroy(relations);
     SUCCEEDS(hol_chains_adjustment(both, &error, &bond));
     EXPECT(error == 0 && bond == -1);
     SUCCEEDS(hol_chains_implied(both, implied));

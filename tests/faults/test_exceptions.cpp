@@ -111,6 +111,16 @@ int add_copies_of_bodies(scene &s)
     return hol_chains_n_molecules(s.chains) == before + (status == HOL_OK ? 3 : 0) ? status : -1;
 }
 
+int add_copies_of_relations(scene &s)
+{
+    static const std::int64_t size = 2, atoms[2] = {0, 1};
+    static const double same[2] = {1, -1};
+    const std::int64_t before = hol_chains_n_molecules(s.chains);
+    const int status =
+        hol_chains_add_linear_molecules(s.chains, 3, 2, 3900, 1, &size, atoms, same, 0, nullptr, nullptr);
+    return hol_chains_n_molecules(s.chains) == before + (status == HOL_OK ? 3 : 0) ? status : -1;
+}
+
 int set_active(scene &s)
 {
     const unsigned char active[12] = {1, 0, 1, 1, 0};
@@ -195,6 +205,7 @@ const operation operations[] = {
     {"hol_chains_add_block", add_several},
     {"hol_chains_add_rigid", add_bodies},
     {"hol_chains_add_rigid_molecules", add_copies_of_bodies},
+    {"hol_chains_add_linear_molecules", add_copies_of_relations},
     {"hol_forces with bodies", forces_with_bodies},
     {"hol_chains_set_box", set_box},
     {"hol_chains_set_active", set_active},

@@ -25,6 +25,12 @@ contains
                  "its force goes to the atoms")
       call check(chains%degrees_of_freedom() == 9, "it has no freedoms of its own")
       call chains%destroy()
+      call chains%create([1.0_real64, 2.0_real64, 0.0_real64, 1.0_real64])
+      call chains%add_linear_molecules(1, 3, 1, [1, 2, 3], [0.75_real64, 0.25_real64, -1.0_real64])
+      call chains%forces(r, f=f, g=g)
+      call check(maxval(abs(g(:, 1) - 0.75_real64*f(:, 3))) < 16*eps .and. chains%degrees_of_freedom() == 9, &
+                 "as one of many copies")
+      call chains%destroy()
       call chains%create([1.0_real64, 2.0_real64, 3.0_real64, 1.0_real64])
       call chains%add_linear([1_int64, 2_int64, 3_int64], [0.75_real64, 0.25_real64, -1.0_real64], &
                              bonds=reshape([3_int64, 4_int64], [2, 1]), lengths=[2.0_real64])

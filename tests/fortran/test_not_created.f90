@@ -46,6 +46,8 @@ program test_not_created
    call expect_not_created("set_max_iterations")
    call none%add_linear([1, 2], [1.0_real64, -1.0_real64], stat=stat, errmsg=message)
    call expect_not_created("add_linear")
+   call none%add_linear_molecules(1, 2, 1, [1, 2], [1.0_real64, -1.0_real64], stat=stat, errmsg=message)
+   call expect_not_created("add_linear_molecules")
    call none%set_length_tolerance(1e-3_real64, stat, message)
    call expect_not_created("set_length_tolerance")
    call none%set_memory_limit(5, stat, message)

@@ -328,6 +328,29 @@ class Linear(unittest.TestCase):
         molecules.set_masses(np.array([2.0, 2, 3, 4, 5, np.inf, np.inf]))
         self.assertLess(np.abs(molecules.forces(r, None, f).forces.sum(0)).max(), 1e-12)
 
+    def test_many_copies_are_as_one_by_one(self):
+        rng = np.random.default_rng(15)
+        masses = np.tile([1.0, 2, 0, np.inf], 3)
+        masses[5] = 4.0  # one of another kind
+        many, single = hol.Molecules(np.r_[1.0, masses]), hol.Molecules(np.r_[1.0, masses])
+        relations, c, bonds = [[0, 1, 2], [0, 1, 3]], [[0.25, 0.75, -1], [2, -1, -1.0]], [(0, 1)]
+        many.add_linear_molecules(3, 4, relations[:1], c[:1], bonds, [1.5], first_atom=1)
+        for k in range(3):
+            single.add_linear([[1 + 4 * k + i for i in relations[0]]], c[:1], [(1 + 4 * k, 2 + 4 * k)], [1.5])
+        r, v, f = rng.normal(size=(3, 13, 3))
+        for k in range(3):
+            d = r[2 + 4 * k] - r[1 + 4 * k]
+            r[2 + 4 * k] = r[1 + 4 * k] + 1.5 * d / np.linalg.norm(d)
+            r[3 + 4 * k] = 0.25 * r[1 + 4 * k] + 0.75 * r[2 + 4 * k]
+        for molecules in many, single, pickle.loads(pickle.dumps(many)):
+            self.assertEqual((molecules.n_molecules, molecules.n_bonds), (3, 3))
+            np.testing.assert_array_equal(molecules.forces(r, v, f).forces, many.forces(r, v, f).forces)
+        held = hol.Molecules(np.r_[1.0, masses])
+        held.add_linear_molecules(3, 4, relations[1:], c[1:], first_atom=1)
+        self.assertEqual(held.degrees_of_freedom(), 3 + 3 * 3)
+        with self.assertRaisesRegex(hol.Error, "reach outside"):
+            held.add_linear_molecules(4, 4, relations[:1], c[:1])
+
     def test_fixed_atoms_that_leave_nothing_free(self):
         molecules = hol.Molecules([1.0, 1.0, np.inf, np.inf])
         for atoms, c, words in (([[0, 2]], [[1.0, -1.0]], "nothing of it free"), ([[2, 3]], [[1.0, -1.0]], "can move"),

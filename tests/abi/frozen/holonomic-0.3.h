@@ -330,7 +330,9 @@ HOL_API int hol_chains_add_rigid_molecules(hol_chains *chains, int64_t n_molecul
  * @param[in] n_relations   >= 1
  * @param[in] sizes         [n_relations], how many atoms each has, >= 2
  * @param[in] atoms         [sum of sizes], the atoms of one relation after the other. An atom of mass 0 is a massless
- *                          site, as in a body; one of infinite mass can be in no relation.
+ *                          site, as in a body; one of infinite mass is held where the caller has it: a centre of mass is
+ *                          driven by moving the fixed atom that it is to be at, between r_ref and r, and by its
+ *                          velocity in v. Of accelerations it has none
  * @param[in] coefficients  [sum of sizes]; those of a relation add up to 0, so that nothing depends on the origin
  * @param[in] n_bonds       >= 0; 0: relations alone
  * @param[in] pairs         [n_bonds][2], bonds of the molecules that the relations make, or NULL
@@ -349,6 +351,27 @@ HOL_API int hol_chains_add_rigid_molecules(hol_chains *chains, int64_t n_molecul
 HOL_API int hol_chains_add_linear(hol_chains *chains, int64_t n_relations, const int64_t *sizes, const int64_t *atoms,
                                   const double *coefficients, int64_t n_bonds, const int64_t *pairs,
                                   const double *lengths);
+
+/**
+ * Adds the same relations and bonds for n_molecules molecules of n_atoms consecutive atoms each, as
+ * hol_chains_add_molecules does.
+ * @param[in,out] chains
+ * @param[in] n_molecules   >= 0
+ * @param[in] n_atoms       >= 2, atoms from one molecule to the next; some may be in no relation and have no bond
+ * @param[in] first_atom    the first atom of the first molecule
+ * @param[in] n_relations   >= 1, relations of one molecule
+ * @param[in] sizes         [n_relations]
+ * @param[in] atoms         [sum of sizes], counted from the index base (hol_chains_set_index_base) within the molecule
+ * @param[in] coefficients  [sum of sizes]
+ * @param[in] n_bonds       >= 0
+ * @param[in] pairs         [n_bonds][2], counted likewise, or NULL
+ * @param[in] lengths       [n_bonds], or NULL
+ * @return as hol_chains_add_linear. Since 0.3.
+ */
+HOL_API int hol_chains_add_linear_molecules(hol_chains *chains, int64_t n_molecules, int64_t n_atoms,
+                                            int64_t first_atom, int64_t n_relations, const int64_t *sizes,
+                                            const int64_t *atoms, const double *coefficients, int64_t n_bonds,
+                                            const int64_t *pairs, const double *lengths);
 
 /**
  * New lengths for all bonds, without building the set again.
