@@ -355,6 +355,7 @@ static void copies_are_the_same_through_every_layout(void **state)
                          w = lay_out(layouts + l, m.n_atoms, m.v, 3), out = lay_out(layouts + l, m.n_atoms, m.f, 3),
                          p = lay_out(layouts + l, m.n_atoms, start, 3), x = lay_out(layouts + l, m.n_atoms, m.f, 3);
                 for (int mode = HOL_WRITE; mode <= HOL_ADD; ++mode) {
+                    for (size_t i = 0; layouts[l].element == HOL_FLOAT && i < size; ++i) g[i] = (float)g[i];
                     const int status = hol_forces(m.chains, reference, m.v, m.f, lambda, NULL, g, mode, NULL);
                     assert_int_equal(status,
                                      hol_forces_view(m.chains, INPUT(&r.view), INPUT(&w.view), INPUT(&f.view), got,

@@ -149,6 +149,7 @@ static void alike_through(const assembly *a, const double *start, const layout *
     laid_out p = lay_out(how, a->n_atoms, start, 3), x = lay_out(how, a->n_atoms, a->v, 3);
     hol_report report, view_report;
     for (int mode = HOL_WRITE; mode <= HOL_ADD; ++mode) {
+        for (size_t i = 0; how->element == HOL_FLOAT && i < size; ++i) g[i] = (float)g[i];
         const int status = hol_forces(a->chains, a->r, a->v, a->f, lambda, NULL, g, mode, NULL);
         assert_int_equal(status, hol_forces_view(a->chains, INPUT(&r.view), INPUT(&w.view), INPUT(&f.view), view_lambda,
                                                  NULL, &out.view, mode, NULL));

@@ -227,6 +227,10 @@ HOL_INLINE void store_multipliers(const Place &place, const vec *t, vec factor, 
     }
 }
 
+// Whether a virial is summed up over the same blocks as on the general path, so that layouts change no bit of it. Chains
+// of a unit that is not regular come here by their numbers of bonds.
+HOL_INLINE bool sums_in_order(const Unit &unit, bool virial) { return unit.regular || !virial; }
+
 // Counts factor times the virial of the bonds of `used` molecules, as add_virial() does. They are copied, so that they
 // stay in registers where nobody asks for it.
 template <int N>

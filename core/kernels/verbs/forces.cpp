@@ -142,9 +142,9 @@ static int64_t forces_of_molecules(const ForcesCall &call, const Unit &unit, con
                 k, [&]() HOL_FORCED { return t[k]; }, k % 4 == 0, false);
         if (__builtin_expect(any(sweep.doubt() | ~sweep.calm()), 0)) break;
         backward(0, N, t, L);
+        if (__builtin_expect(call.virial, 0)) count_virial<N>(D, t, n, splat(1.0), tally);
         if (g) store_pulls(D, t, place, g, call.add);
         if (call.lambda) store_multipliers(place, t, splat(0.5), call.lambda);
-        if (__builtin_expect(call.virial, 0)) count_virial<N>(D, t, n, splat(1.0), tally);
     }
     return first;
 }
@@ -155,7 +155,7 @@ static bool reads_columns(const ForcesCall &call) {
 }
 
 static int64_t small_forces(const ForcesCall &call, const Unit &unit, Block &block, int64_t first, Tally &tally) {
-    if (!call.f.x || call.tension) return first;
+    if (!call.f.x || call.tension || !sums_in_order(unit, call.virial)) return first;
     const bool packed =
         call.r.packed && (!call.v.x || call.v.packed) && call.f.packed && (!call.g.x || call.g.packed);
     const bool boxed = call.box.shape != Box::none;

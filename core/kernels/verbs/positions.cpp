@@ -213,8 +213,8 @@ HOL_INLINE void note_block(const PositionsCall &call, const Place &place, Block 
 // Single bonds, two blocks at a time: while one waits for its root and its quotient, the other is worked on. Ends
 // before a pair of blocks of which one needs more than this.
 template <class Place, bool uniform, bool boxed>
-HOL_NOINLINE int64_t pairs_of_single_bonds(const PositionsCall &call, const Unit &unit, Block &given, int64_t first,
-                                           Tally &tally) {
+HOL_NOINLINE int64_t pairs_of_single_bonds(const PositionsCall &call, const Unit &unit, const Block &given,
+                                           int64_t first, Tally &tally) {
     const SmallCall<Place> arrays(call);
     vec memory[2][small_scratch<1>];
     Arena arena_a(reinterpret_cast<double *>(memory[0]), 1), arena_b(reinterpret_cast<double *>(memory[1]), 1);
@@ -236,19 +236,11 @@ HOL_NOINLINE int64_t pairs_of_single_bonds(const PositionsCall &call, const Unit
                 coarse_moves<all, 1>(a.block, x_a, carried_a, out_a.converged, coarse_part) |
                 coarse_moves<all, 1>(b.block, x_b, carried_b, out_b.converged, coarse_part)))
             break;
-        if (call.report) {
-            note_block(call, at_a, given, x_a, out_a, tally);
-            note_block(call, at_b, given, x_b, out_b, tally);
-        }
         write_positions<uniform>(arrays, at_a, a.block, x_a, atoms_a, out_a.untouched);
         write_positions<uniform>(arrays, at_b, b.block, x_b, atoms_b, out_b.untouched);
-        if (__builtin_expect(call.virial, 0)) {
-            count_virial<1>(x_a.b, x_a.tau, W, splat(arrays.per_dt2) / a.block.unit, tally);
-            count_virial<1>(x_b.b, x_b.tau, W, splat(arrays.per_dt2) / b.block.unit, tally);
-        }
         count_moved(tally, n_moved(out_a, W) + n_moved(out_b, W), 1);
         right = bits(out_a.untouched & out_b.untouched) == all_lanes ? right + 1 : 0;
-        if (__builtin_expect(right >= enough_right, 0) && !call.report)
+        if (__builtin_expect(right >= enough_right, 0))
             first = pass_over_right_ones<uniform, boxed, Place>(call, unit, given, first + 2 * W, end) - 2 * W;
     }
     return first;
@@ -327,7 +319,7 @@ static bool reads_columns(const PositionsCall &call) {
 
 static inline int64_t small_positions(const PositionsCall &call, const Unit &unit, Block &block, int64_t first,
                                       Tally &tally) {
-    if (call.guess) return first;
+    if (call.guess || !sums_in_order(unit, call.virial)) return first;
     if (unit.lanes[unit.regular ? 0 : first].n_bonds == 2 && !tries_two_bonds(call)) return first;
     const bool packed = call.r.packed && call.r_ref.packed && (!call.v.x || call.v.packed);
     const bool has_box = call.box.shape != Box::none || call.box_ref.shape != Box::none;
@@ -335,7 +327,7 @@ static inline int64_t small_positions(const PositionsCall &call, const Unit &uni
     const auto kernel = [&](auto place, auto uniform, auto boxed) {
         typedef typename decltype(place)::type Place;
         if constexpr (Place::in_row && Place::bonds == 1 && W > 1)
-            first = pairs_of_single_bonds<Place, uniform, boxed>(call, unit, block, first, tally);
+            if (!call.report && !call.virial) first = pairs_of_single_bonds<Place, uniform, boxed>(call, unit, block, first, tally);
         return positions_of_molecules<Place, uniform, boxed>(call, unit, block, first, tally);
     };
     if (packed) return any_molecules(unit, block, first, has_box, one_length, kernel);

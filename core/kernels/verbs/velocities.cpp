@@ -142,12 +142,12 @@ static int64_t velocities_of_molecules(const VelocitiesCall &call, const Unit &u
         }
         substitute(N, x.correction());
         if (__builtin_expect(any(sweep.doubt() | ~x.finite(N)), 0)) break;
+        if (__builtin_expect(call.virial, 0)) count_virial<N>(D, t, n, block.mass, tally);
         Pull<uniform> correction{block, x, left};
         HOL_UNROLL
         for (int k = N - 1; k >= 0; --k) x.v[k + 1] = correction.step(k);
         x.v[0] = correction.finish();
         if (call.lambda) store_multipliers(place, t, 0.5 * block.mass, call.lambda);
-        if (__builtin_expect(call.virial, 0)) count_virial<N>(D, t, n, block.mass, tally);
         store_molecules<write_>(place, elements, v);
     }
     return first;
@@ -159,6 +159,7 @@ static bool reads_columns(const VelocitiesCall &call) {
 
 static int64_t small_velocities(const VelocitiesCall &call, const Unit &unit, Block &block, int64_t first,
                                 Tally &tally) {
+    if (!sums_in_order(unit, call.virial)) return first;
     const bool boxed = call.box.shape != Box::none;
     const auto kernel = [&](auto place, auto uniform, auto in_box) {
         typedef typename decltype(place)::type Place;
