@@ -61,7 +61,7 @@ for program in "$build"/tests/fortran/fortran_test_*.exe; do
     [ -e "$program" ] || continue
     name=$(basename "$program" .exe)
     arguments=()
-    case $name in fortran_test_oracle) arguments=("$top/tests/oracle") ;; esac
+    case $name in fortran_test_oracle | fortran_test_metric) arguments=("$top/tests/oracle") ;; esac
     run "$name" "$program" "${arguments[@]}"
 done
 # What measures time or takes minutes is left out, and test_accuracy, whose bounds are those of the very chains that this system's
