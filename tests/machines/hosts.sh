@@ -23,9 +23,20 @@ if [ -n "${FRESH_CCACHE:-}" ]; then
     shared=$FRESH_CCACHE
 fi
 
+# xtb is of Fortran, and comes as the distribution's source package.
+fortran=OFF compilers=c++
+case " $* " in
+    *" xtb "*)
+        fortran=ON compilers="c++ gfortran"
+        sed -n 's/^deb /deb-src /p' "$root"/etc/apt/sources.list "$root"/etc/apt/sources.list.d/*.list 2>/dev/null |
+            sort -u >"$root/etc/apt/sources.list.d/sources.list"
+        inside sh -c 'apt-get update -qq && apt-get install -y -qq --no-install-recommends dpkg-dev' </dev/null >>"$root.log" 2>&1 || exit 1
+        ;;
+esac
+
 # The library, once for all of them.
-if ! inside "${ccache[@]}" CMAKE_ARGS="${CMAKE_ARGS:-}" bash -c 'cd /srv/holonomic && . scripts/setup.sh && need c++ make cmake &&
-    cmake -S . -B build/library -DHOLONOMIC_BUILD_TESTS=OFF -DHOLONOMIC_BUILD_FORTRAN=OFF "-DHOLONOMIC_INSTRUCTION_SETS=$few_instruction_sets" ${CMAKE_ARGS:-} &&
+if ! inside "${ccache[@]}" CMAKE_ARGS="${CMAKE_ARGS:-}" bash -c 'cd /srv/holonomic && . scripts/setup.sh && need '"$compilers"' make cmake &&
+    cmake -S . -B build/library -DHOLONOMIC_BUILD_TESTS=OFF -DHOLONOMIC_BUILD_FORTRAN='$fortran' "-DHOLONOMIC_INSTRUCTION_SETS=$few_instruction_sets" ${CMAKE_ARGS:-} &&
     cmake --build build/library -j "$(build_jobs)" && cmake --install build/library --prefix /srv/installed' </dev/null >>"$root.log" 2>&1; then
     tail -n 20 "$root.log"
     exit 1
