@@ -31,7 +31,8 @@ for dll in "$build"/capi/*.dll "$build"/fortran/*.dll; do
     needs=$($target-objdump -p "$dll" | sed -n 's/.*DLL Name: //p' | grep -vixE '(kernel32|msvcrt|user32|advapi32|api-ms-win-.*|ucrtbase|libholonomic-0)\.dll')
     [ -z "$needs" ] || { echo "$(basename "$dll") needs $needs"; exit 1; }
 done
-$target-objdump -p "$build"/capi/libholonomic-*.dll | sed -n '/Ordinal\/Name Pointer/,$s/.*\] \(+base\[.*\] \)*\([A-Za-z_]\w*\)$/\2/p' | sort >"$build/exports"
+$target-objdump -p "$build"/capi/libholonomic-*.dll |
+    awk '/Ordinal\/Name Pointer/ { inside = 1; next } /^$/ { inside = 0 } inside { print $NF }' | sort >"$build/exports"
 sed -n 's/^ *\(hol_[a-z_0-9]*\);.*/\1/p' "$top/capi/holonomic.map" | sort | diff - "$build/exports" || { echo "the DLL exports something else"; exit 1; }
 
 # Wine makes its own Windows at first.
