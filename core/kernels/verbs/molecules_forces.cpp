@@ -28,7 +28,8 @@ static void forces_of_blocks(const ForcesCall &call, const MoleculeUnit &unit, d
     if (unit.schedule->type == Schedule::triangle) {
         const TriangleCall triangles = {call.r,      call.v,       call.f,   nullptr,     call.g,
                                         call.lambda, call.tension, call.add, call.virial, call.box};
-        solve_triangles(TriangleLinearVerb(triangles, &call, nullptr, tally), unit, packed, reads_columns(call), scratch);
+        solve_triangles(TriangleLinearVerb(triangles, &call, nullptr, tally), unit, packed, reads_columns(call),
+                        scratch);
         return;
     }
     NextMolecules ahead({&call.r, &call.v, &call.f, &call.g}, call.lambda);
