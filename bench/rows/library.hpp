@@ -14,11 +14,11 @@ namespace rows {
     function(hol_error_message) function(hol_instruction_set) function(hol_chains_create) function(hol_chains_destroy) \
         function(hol_chains_add) function(hol_chains_add_block) function(hol_chains_add_bonds)                         \
             function(hol_chains_add_molecules) function(hol_chains_set_box) function(hol_chains_set_tolerance)         \
-                function(hol_chains_n_bonds)                                                                       \
-                function(hol_forces) function(hol_forces_view) function(hol_project_velocities)                        \
-                    function(hol_project_velocities_view) function(hol_project_positions)                              \
-                        function(hol_project_positions_view) function(hol_metric) function(hol_metric_view)            \
-                            function(hol_solve) function(hol_reactions) function(hol_violation)
+                function(hol_chains_n_bonds) function(hol_forces) function(hol_forces_view)                            \
+                    function(hol_project_velocities) function(hol_project_velocities_view)                             \
+                        function(hol_project_positions) function(hol_project_positions_view) function(hol_metric)      \
+                            function(hol_metric_view) function(hol_solve) function(hol_reactions)                      \
+                                function(hol_violation)
 
 /// The functions of the header by their names.
 struct Library {

@@ -9,8 +9,8 @@ namespace holonomic {
 struct AtomArray {
     char *x, *y, *z;
     int64_t stride;  // bytes
-    bool is_float;  // the caller's numbers are floats
-    bool packed;    // doubles [n_atoms][3], the layout that the kernels read and write in place; of floats: a copy
+    bool is_float;   // the caller's numbers are floats
+    bool packed;     // doubles [n_atoms][3], the layout that the kernels read and write in place; of floats: a copy
     bool holds_floats() const { return is_float && !packed; }
 };
 

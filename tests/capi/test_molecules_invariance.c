@@ -361,9 +361,8 @@ static void copies_are_the_same_through_every_layout(void **state)
                 for (int mode = HOL_WRITE; mode <= HOL_ADD; ++mode) {
                     for (size_t i = 0; layouts[l].element == HOL_FLOAT && i < size; ++i) g[i] = (float)g[i];
                     const int status = hol_forces(m.chains, reference, m.v, m.f, lambda, NULL, g, mode, NULL);
-                    assert_int_equal(status,
-                                     hol_forces_view(m.chains, INPUT(&r.view), INPUT(&w.view), INPUT(&f.view), got,
-                                                     NULL, &out.view, mode, NULL));
+                    assert_int_equal(status, hol_forces_view(m.chains, INPUT(&r.view), INPUT(&w.view), INPUT(&f.view),
+                                                             got, NULL, &out.view, mode, NULL));
                     /* sums at fixed atoms are rounded to floats on the way */
                     if (l < n_double_layouts || kinds[k].kind != MOLECULE_FIXED_ATOMS)
                         assert_laid_out(&out, g, layouts[l].name);

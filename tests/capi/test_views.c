@@ -170,8 +170,8 @@ static void alike_through(const assembly *a, const double *start, const layout *
         assert_memory_equal(&report, &view_report, sizeof report);
         /* once more, where nothing is left to do, and without what is optional */
         assert_int_equal(of_r, hol_project_positions(a->chains, a->r, q, NULL, time_step, NULL, 0, NULL, NULL));
-        assert_int_equal(of_r, hol_project_positions_view(a->chains, INPUT(&r.view), &p.view, NULL, time_step, NULL, 0,
-                                                          NULL, NULL));
+        assert_int_equal(
+            of_r, hol_project_positions_view(a->chains, INPUT(&r.view), &p.view, NULL, time_step, NULL, 0, NULL, NULL));
         assert_laid_out(&p, q, how->name);
     }
     laid_out_free(&r), laid_out_free(&f), laid_out_free(&out), laid_out_free(&w), laid_out_free(&p), laid_out_free(&x);

@@ -34,8 +34,8 @@ HOL_INLINE bool comes_in_parts(const MoleculeUnit &unit) {
 // Calls work(call, unit, tally) for parts of a unit that has several molecules. Returns false, and has done nothing,
 // where it has not. `moves`: the call counts the molecules that it moves, and writes nothing if there are none.
 template <class Call, class AnyUnit, int n, class Work>
-HOL_NOINLINE bool in_packed_parts(const Call &call, const AnyUnit &unit, const PartArray<Call> (&arrays)[n],
-                                  bool moves, Tally &tally, const Work &work) {
+HOL_NOINLINE bool in_packed_parts(const Call &call, const AnyUnit &unit, const PartArray<Call> (&arrays)[n], bool moves,
+                                  Tally &tally, const Work &work) {
     const int64_t n_atoms = atoms_of(unit);
     if (unit.count < 2 || !unit.regular || unit.lanes[0].atoms || W * n_atoms > most_atoms_of_part ||
         !comes_in_parts(unit))
@@ -71,8 +71,8 @@ HOL_NOINLINE bool in_packed_parts(const Call &call, const AnyUnit &unit, const P
             }
             for (int e = 0; e < 3 * W; ++e) rows[3 * count + e] = 0;
             char *const x = reinterpret_cast<char *>(rows);
-            of_part.*arrays[a].array = {x, x + sizeof(double), x + 2 * sizeof(double), 3 * sizeof(double),
-                                        array.is_float, true};
+            of_part.*arrays[a].array = {
+                x, x + sizeof(double), x + 2 * sizeof(double), 3 * sizeof(double), array.is_float, true};
         }
         const Tally before = tally;
         part.roomy = true;

@@ -91,8 +91,8 @@ static void forces_block(const Block &block, const Lane *lane, const ForcesCall 
 
 // Bonds D[k] of W molecules and their right-hand sides t[k].
 template <bool uniform, bool boxed, class Place, class Array>
-HOL_INLINE void load_sides(const Block &block, const Box &box, const Place &place, const Array &r, const Array &v, const Array &f,
-                           vec3 *D, vec *t) {
+HOL_INLINE void load_sides(const Block &block, const Box &box, const Place &place, const Array &r, const Array &v,
+                           const Array &f, vec3 *D, vec *t) {
     constexpr int N = Place::bonds;
     vec e[vectors_of<N>];
     vec3 dv[N] = {}, *const x = reinterpret_cast<vec3 *>(e);
@@ -142,7 +142,7 @@ static int64_t forces_of_molecules(const ForcesCall &call, const Unit &unit, con
                 k, [&]() HOL_FORCED { return t[k]; }, k % 4 == 0, false);
         if (__builtin_expect(any(sweep.doubt() | ~sweep.calm()), 0)) break;
         backward(0, N, t, L);
-        if (__builtin_expect(call.virial, 0)) count_virial<N>(D, t, n, splat(1.0), tally);
+        if (N >= fewest_with_virial && __builtin_expect(call.virial, 0)) count_virial<N>(D, t, n, splat(1.0), tally);
         if (g) store_pulls(D, t, place, g, call.add);
         if (call.lambda) store_multipliers(place, t, splat(0.5), call.lambda);
     }
@@ -156,8 +156,7 @@ static bool reads_columns(const ForcesCall &call) {
 
 static int64_t small_forces(const ForcesCall &call, const Unit &unit, Block &block, int64_t first, Tally &tally) {
     if (!call.f.x || call.tension || !sums_in_order(unit, call.virial)) return first;
-    const bool packed =
-        call.r.packed && (!call.v.x || call.v.packed) && call.f.packed && (!call.g.x || call.g.packed);
+    const bool packed = call.r.packed && (!call.v.x || call.v.packed) && call.f.packed && (!call.g.x || call.g.packed);
     const bool boxed = call.box.shape != Box::none;
     const auto kernel = [&](auto place, auto uniform, auto in_box) {
         return forces_of_molecules<typename decltype(place)::type, uniform, in_box>(call, unit, block, first, tally);
@@ -168,15 +167,15 @@ static int64_t small_forces(const ForcesCall &call, const Unit &unit, Block &blo
 
 // Arrays that are not packed. False if nothing has been done.
 static bool forces_in_parts(const ForcesCall &call, const Unit &unit, double *scratch, Tally &tally) {
-    if (reads_columns(call) && fit_columns(unit, call.box.shape != Box::none)) return false;
+    if (reads_columns(call) && fit_columns(unit, call.box.shape != Box::none) && sums_in_order(unit, call.virial))
+        return false;
     const PartArray<ForcesCall> arrays[] = {{&ForcesCall::r, true, false},
                                             {&ForcesCall::v, true, false},
                                             {&ForcesCall::f, true, false},
                                             {&ForcesCall::g, call.add, true}};
-    return in_packed_parts(call, unit, arrays, false, tally,
-                           [=](const ForcesCall &c, const Unit &u, Tally &own) {
-                               for_each_block(c, u, scratch, own, forces_block, small_forces);
-                           });
+    return in_packed_parts(call, unit, arrays, false, tally, [=](const ForcesCall &c, const Unit &u, Tally &own) {
+        for_each_block(c, u, scratch, own, forces_block, small_forces);
+    });
 }
 
 void forces(const ForcesCall &call, const Unit &unit, double *scratch, Tally &tally) {

@@ -77,9 +77,8 @@ static void positions_of_blocks(const PositionsCall &call, const MoleculeUnit &u
 }
 
 void molecules_positions(const PositionsCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
-    const PartArray<PositionsCall> arrays[] = {{&PositionsCall::r_ref, true, false},
-                                               {&PositionsCall::r, true, true},
-                                               {&PositionsCall::v, true, true}};
+    const PartArray<PositionsCall> arrays[] = {
+        {&PositionsCall::r_ref, true, false}, {&PositionsCall::r, true, true}, {&PositionsCall::v, true, true}};
     const auto blocks = [=](const PositionsCall &c, const MoleculeUnit &u, Tally &own) {
         positions_of_blocks(c, u, scratch, own);
     };

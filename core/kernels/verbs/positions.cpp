@@ -127,8 +127,8 @@ HOL_INLINE void move_molecules(const SmallCall<Place> &call, const Place &place,
 
 // The same, out of the way: it would take the registers of blocks that move as a whole.
 template <bool uniform, class Place>
-HOL_NOINLINE void move_some_molecules(const SmallCall<Place> &call, const Place &place, const Newton &x, const vec *atoms,
-                                      mask untouched) {
+HOL_NOINLINE void move_some_molecules(const SmallCall<Place> &call, const Place &place, const Newton &x,
+                                      const vec *atoms, mask untouched) {
     move_molecules<uniform, true>(call, place, x, atoms, untouched);
 }
 
@@ -146,8 +146,8 @@ HOL_INLINE void write_positions(const SmallCall<Place> &call, const Place &place
     if (call.lambda) store_multipliers(place, x.tau, splat(call.factor) / block.unit, call.lambda);
 }
 
-// So many blocks in a row, all of whose molecules were right, say that the next ones may be, too. After a single one the
-// guess would often be wrong where the tolerance is about as large as what a step leaves.
+// So many blocks in a row, all of whose molecules were right, say that the next ones may be, too. After a single one
+// the guess would often be wrong where the tolerance is about as large as what a step leaves.
 constexpr int enough_right = 2;
 
 template <bool uniform, bool boxed, class Place>
@@ -270,7 +270,7 @@ HOL_NOINLINE int64_t positions_of_molecules(const PositionsCall &call, const Uni
         if (!solve_molecules<uniform, N>(block, x, call, carried, out)) break;
         if (call.report) note_block(call, place, Place::alike ? given : newton.masses.own, x, out, tally);
         write_positions<uniform>(arrays, place, block, x, atoms, out.untouched);
-        if (__builtin_expect(call.virial, 0))
+        if (N >= fewest_with_virial && __builtin_expect(call.virial, 0))
             count_virial<N>(x.b, x.tau, n, splat(arrays.per_dt2) / block.unit, tally);
         count_moved(tally, n_moved(out, n), out.solves);
         right = bits(out.untouched) == all_lanes ? right + 1 : 0;
@@ -327,7 +327,7 @@ static inline int64_t small_positions(const PositionsCall &call, const Unit &uni
     const auto kernel = [&](auto place, auto uniform, auto boxed) {
         typedef typename decltype(place)::type Place;
         if constexpr (Place::in_row && Place::bonds == 1 && W > 1)
-            if (!call.report && !call.virial) first = pairs_of_single_bonds<Place, uniform, boxed>(call, unit, block, first, tally);
+            if (!call.report) first = pairs_of_single_bonds<Place, uniform, boxed>(call, unit, block, first, tally);
         return positions_of_molecules<Place, uniform, boxed>(call, unit, block, first, tally);
     };
     if (packed) return any_molecules(unit, block, first, has_box, one_length, kernel);
@@ -357,10 +357,10 @@ static void positions_of_blocks(const PositionsCall &call, const Unit &unit, dou
 
 // Arrays that are not packed. False if nothing has been done.
 static bool positions_in_parts(const PositionsCall &call, const Unit &unit, double *scratch, Tally &tally) {
-    if (reads_columns(call) && fit_columns<most_in_columns>(unit, false)) return false;
-    const PartArray<PositionsCall> arrays[] = {{&PositionsCall::r_ref, true, false},
-                                               {&PositionsCall::r, true, true},
-                                               {&PositionsCall::v, true, true}};
+    if (reads_columns(call) && fit_columns<most_in_columns>(unit, false) && sums_in_order(unit, call.virial))
+        return false;
+    const PartArray<PositionsCall> arrays[] = {
+        {&PositionsCall::r_ref, true, false}, {&PositionsCall::r, true, true}, {&PositionsCall::v, true, true}};
     return in_packed_parts(call, unit, arrays, true, tally, [=](const PositionsCall &c, const Unit &u, Tally &own) {
         positions_of_blocks(c, u, scratch, own);
     });

@@ -142,7 +142,7 @@ static int64_t velocities_of_molecules(const VelocitiesCall &call, const Unit &u
         }
         substitute(N, x.correction());
         if (__builtin_expect(any(sweep.doubt() | ~x.finite(N)), 0)) break;
-        if (__builtin_expect(call.virial, 0)) count_virial<N>(D, t, n, block.mass, tally);
+        if (N >= fewest_with_virial && __builtin_expect(call.virial, 0)) count_virial<N>(D, t, n, block.mass, tally);
         Pull<uniform> correction{block, x, left};
         HOL_UNROLL
         for (int k = N - 1; k >= 0; --k) x.v[k + 1] = correction.step(k);
@@ -153,9 +153,7 @@ static int64_t velocities_of_molecules(const VelocitiesCall &call, const Unit &u
     return first;
 }
 
-static bool reads_columns(const VelocitiesCall &call) {
-    return is_in_columns(call.r) && is_in_columns(call.v);
-}
+static bool reads_columns(const VelocitiesCall &call) { return is_in_columns(call.r) && is_in_columns(call.v); }
 
 static int64_t small_velocities(const VelocitiesCall &call, const Unit &unit, Block &block, int64_t first,
                                 Tally &tally) {
@@ -171,12 +169,12 @@ static int64_t small_velocities(const VelocitiesCall &call, const Unit &unit, Bl
 
 // Arrays that are not packed. False if nothing has been done.
 static bool velocities_in_parts(const VelocitiesCall &call, const Unit &unit, double *scratch, Tally &tally) {
-    if (reads_columns(call) && fit_columns(unit, call.box.shape != Box::none)) return false;
+    if (reads_columns(call) && fit_columns(unit, call.box.shape != Box::none) && sums_in_order(unit, call.virial))
+        return false;
     const PartArray<VelocitiesCall> arrays[] = {{&VelocitiesCall::r, true, false}, {&VelocitiesCall::v, true, true}};
-    return in_packed_parts(call, unit, arrays, false, tally,
-                           [=](const VelocitiesCall &c, const Unit &u, Tally &own) {
-                               for_each_block(c, u, scratch, own, velocities_block, small_velocities);
-                           });
+    return in_packed_parts(call, unit, arrays, false, tally, [=](const VelocitiesCall &c, const Unit &u, Tally &own) {
+        for_each_block(c, u, scratch, own, velocities_block, small_velocities);
+    });
 }
 
 void velocities(const VelocitiesCall &call, const Unit &unit, double *scratch, Tally &tally) {

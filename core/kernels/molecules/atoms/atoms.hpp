@@ -86,7 +86,8 @@ HOL_NOINLINE void read_anywhere(const AtomArray &array, const Atoms<V> &at, int6
         const char *const p[3] = {array.x + offset, array.y + offset, array.z ? array.z + offset : nullptr};
         V *const component[3] = {&a.x, &a.y, &a.z};
         for (int c = 0; c < 3; ++c)
-            if (p[c]) Width<V>::set(*component[c], i, array.holds_floats() ? element<float>(p[c]) : element<double>(p[c]));
+            if (p[c])
+                Width<V>::set(*component[c], i, array.holds_floats() ? element<float>(p[c]) : element<double>(p[c]));
     }
 }
 

@@ -241,7 +241,8 @@ HOL_INLINE void write_three(double *out, const Atoms<V> &at, const Vector3<V> &v
     if (__builtin_expect(which == all_of<V>, 1)) {
         double *p[Width<V>::lanes];
         HOL_UNROLL
-        for (int i = 0; i < at.lanes; ++i) p[i] = where == adjacent || where == in_columns ? out + at.bond[0] + 3 * i : out + at.bond[i];
+        for (int i = 0; i < at.lanes; ++i)
+            p[i] = where == adjacent || where == in_columns ? out + at.bond[0] + 3 * i : out + at.bond[i];
         return write_rows(p, value);
     }
     for (int i = 0; i < at.lanes; ++i) {
