@@ -92,7 +92,7 @@ bool go_through(const Chains &chains, const BondVectors &bonds, const Each &each
     const Images images(bonds.box);
     const bool of_atoms = bonds.r != nullptr;
     return chains.for_active([&](const Molecule &m) {
-        const Schedule *const shape = m.shape ? m.shape->schedule.get() : nullptr;
+        const EliminationPlan *const shape = m.shape ? m.shape->elimination.get() : nullptr;
         const std::int64_t *const list = m.atom_list, first = m.first_atom, n_bonds = m.n_bonds;
         const double *const lengths = m.length_table, uniform = m.length_uniform;
         for (std::int64_t k = 0; k < n_bonds; ++k) {

@@ -3,7 +3,7 @@
 
 #define HOL_ISA plain
 #define HOL_LANES 2
-#include "core/kernels/careful/wide.hpp"
+#include "core/kernels/extended/wide.hpp"
 #undef HOL_ISA
 #undef HOL_LANES
 

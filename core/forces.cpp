@@ -41,7 +41,7 @@ struct ForcesWork final : Work {
     void unit(const MoleculeUnit &unit, int where, double *scratch, Tally &tally) const override {
         k.molecules.forces(calls[where], unit, scratch, tally);
     }
-    bool walks_forests() const override { return true; }
+    bool walks_batches() const override { return true; }
     std::int64_t long_blocks(std::int64_t n) const override { return k.long_forces.blocks(n); }
     std::int64_t long_bytes(std::int64_t n) const override { return k.long_forces.bytes(n); }
     void long_chain(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const override {

@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "core/caller/box.hpp"
-#include "core/molecules/memory_limit.hpp"
+#include "core/molecules/given/memory_limit.hpp"
 #include "core/run/apart.hpp"
 #include "core/run/diagnose.hpp"
 #include "core/run/execute.hpp"
@@ -19,7 +19,7 @@ namespace {
 struct MetricWork final : Work {
     const Variants<MetricCall> calls;
     const Kernels &k = kernels();
-    const std::int64_t careful_bytes;  // that others do without
+    const std::int64_t extended_bytes;  // that others do without
     MetricWork(const MetricCall &call, Apart &apart, std::int64_t bytes)
         : calls(
               call, apart, [](MetricCall &) {},
@@ -27,8 +27,8 @@ struct MetricWork final : Work {
                   c.r = apart.atoms(call.r);
                   c.force = apart.summed_atoms(call.force, call.add);
               }),
-          careful_bytes(bytes) {}
-    std::int64_t scratch_bytes() const override { return careful_bytes; }
+          extended_bytes(bytes) {}
+    std::int64_t scratch_bytes() const override { return extended_bytes; }
     void unit(const Unit &unit, int where, double *scratch, Tally &tally) const override {
         kernels(unit).metric(calls[where], unit, scratch, tally);
     }
@@ -80,13 +80,14 @@ struct MetricWork final : Work {
 
 // What the metric of a molecule takes of scratch memory beside other calls: a network needs the factor that these do
 // without, an atom of many bonds the elements of the inverse between all of them.
-std::int64_t more_scratch(const Chains &chains, const Schedule &s) {
+std::int64_t more_scratch(const Chains &chains, const EliminationPlan &s) {
     const char *const kind = s.network ? "network" : "molecule";
     try {
-        const Schedule &order = s.network && !s.careful ? make_careful(s, memory_left(chains)) : *careful_order(s);
+        const EliminationPlan &order =
+            s.network && !s.extended ? make_extended(s, memory_left(chains)) : *extended_order(s);
         if (!s.network && order.more_of_metric == 0) return 0;
         const std::int64_t bytes =
-            (s.network ? order.careful_bytes : chains.plan().scratch_bytes) + order.more_of_metric;
+            (s.network ? order.extended_bytes : chains.plan().scratch_bytes) + order.more_of_metric;
         if (bytes > memory_left(chains)) throw TooMuchMemory(bytes);
         return bytes;
     } catch (const TooMuchMemory &needed) {
@@ -105,13 +106,13 @@ void metric_of_all(const Chains &chains, MetricCall &call, double *energy) {
                          "is a constant; molecules without bodies need a set of their own");
     call.sum = energy != nullptr;
     put_box(chains.box, call.box);
-    std::int64_t careful_bytes = 0;
+    std::int64_t extended_bytes = 0;
     for (const std::int32_t shape : chains.plan().shapes) {
-        const Schedule &s = *chains.plan().schedules[static_cast<std::size_t>(shape)];
-        careful_bytes = std::max(careful_bytes, more_scratch(chains, s));
+        const EliminationPlan &s = *chains.plan().elimination_plans[static_cast<std::size_t>(shape)];
+        extended_bytes = std::max(extended_bytes, more_scratch(chains, s));
     }
     Apart apart(chains);
-    const Tally tally = execute(chains, MetricWork(call, apart, careful_bytes));
+    const Tally tally = execute(chains, MetricWork(call, apart, extended_bytes));
     apart.put_back();
     if (tally.n_bad > 0) {
         const NamedArray arrays[] = {{"position", &call.r}};

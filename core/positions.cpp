@@ -39,7 +39,7 @@ struct PositionsWork final : Work {
         k.molecules.positions(calls[where], unit, scratch, tally);
     }
     bool shares_paths() const override { return true; }
-    bool walks_forests() const override { return true; }
+    bool walks_batches() const override { return true; }
     std::int64_t long_blocks(std::int64_t n) const override { return k.long_positions.blocks(n); }
     std::int64_t long_bytes(std::int64_t n) const override { return store_bytes(k.long_positions, n); }
     void long_chain(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const override {
@@ -73,8 +73,9 @@ struct PositionsWork final : Work {
 // Whether parts of a molecule are moved while others still read the reference: long chains in windows, paths.
 bool moves_in_parts(const Plan &plan) {
     if (plan.longest > longest_lane) return true;
-    return std::any_of(plan.shapes.begin(), plan.shapes.end(),
-                       [&](std::int32_t shape) { return plan.schedules[static_cast<std::size_t>(shape)]->paths; });
+    return std::any_of(plan.shapes.begin(), plan.shapes.end(), [&](std::int32_t shape) {
+        return plan.elimination_plans[static_cast<std::size_t>(shape)]->paths;
+    });
 }
 
 // A copy of the caller's array in memory of this thread: of the atoms of active molecules.

@@ -115,7 +115,7 @@ void write_chain(const Call &call, const Lane &lane, std::int64_t begin, std::in
 }
 
 template <class Each>
-void over_bonds(const Call &call, const Schedule &shape, const MoleculeLane &lane, Each each) {
+void over_bonds(const Call &call, const EliminationPlan &shape, const MoleculeLane &lane, Each each) {
     for (std::int32_t k = 0; k < shape.n_bonds; ++k) {
         const Vector ri = read(call.r, atom_of(lane, shape.atom_i[k])),
                      rj = read(call.r, atom_of(lane, shape.atom_j[k]));
@@ -124,7 +124,8 @@ void over_bonds(const Call &call, const Schedule &shape, const MoleculeLane &lan
 }
 
 // `force` [n_atoms][3]
-void write_molecule(const Call &call, const Schedule &shape, const MoleculeLane &lane, double *force, Tally &tally) {
+void write_molecule(const Call &call, const EliminationPlan &shape, const MoleculeLane &lane, double *force,
+                    Tally &tally) {
     if (call.g.x) std::fill_n(force, 3 * std::ptrdiff_t{shape.n_atoms}, 0.0);
     over_bonds(call, shape, lane, [&](std::int32_t k, const Pull &x) {
         write_bond(call, x, lane.first_bond + k, tally);
@@ -171,9 +172,9 @@ struct ReactionsWork final : Work {
         for (std::int64_t i = 0; i < unit.count; ++i) {
             const MoleculeLane lane = lane_of(unit, i);
             double size = 0;
-            over_bonds(call, *unit.schedule, lane, [&](std::int32_t, const Pull &x) { size += size_of(x); });
+            over_bonds(call, *unit.elimination, lane, [&](std::int32_t, const Pull &x) { size += size_of(x); });
             if (std::isfinite(size))
-                write_molecule(call, *unit.schedule, lane, scratch, tally);
+                write_molecule(call, *unit.elimination, lane, scratch, tally);
             else
                 note_bad(lane.molecule, tally);
         }

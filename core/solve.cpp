@@ -45,7 +45,7 @@ struct SolveWork final : Work {
     }
     // The plan has no linear chains.
     void unit(const Unit &, int, double *, Tally &) const override {}
-    bool walks_forests() const override { return true; }
+    bool walks_batches() const override { return true; }
     std::int64_t long_blocks(std::int64_t) const override { return 0; }
     std::int64_t long_bytes(std::int64_t) const override { return 0; }
     void long_chain(const Lane &, int, const Team &, double *, Tally &) const override {}

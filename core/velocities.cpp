@@ -32,7 +32,7 @@ struct VelocitiesWork final : Work {
     void unit(const MoleculeUnit &unit, int where, double *scratch, Tally &tally) const override {
         k.molecules.velocities(calls[where], unit, scratch, tally);
     }
-    bool walks_forests() const override { return true; }
+    bool walks_batches() const override { return true; }
     std::int64_t long_blocks(std::int64_t n) const override { return k.long_velocities.blocks(n); }
     std::int64_t long_bytes(std::int64_t n) const override { return k.long_velocities.bytes(n); }
     void long_chain(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const override {

@@ -17,7 +17,7 @@ struct KeptWork : Work {
     std::int64_t long_bytes(std::int64_t) const override { return 0; }
     void long_chain(const Lane &lane, int, const Team &, double *, Tally &) const override { left[lane.chain] = 1; }
     bool is_left(const MoleculeUnit &unit) const {
-        if (k.kept.is_kept(*unit.schedule)) return false;
+        if (k.kept.is_kept(*unit.elimination)) return false;
         for (std::int64_t i = 0; i < unit.count; ++i) left[lane_of(unit, i).molecule] = 1;
         return true;
     }
@@ -49,7 +49,7 @@ struct SolveWork final : KeptWork {
         kernels(unit).kept.solve_chains(calls[where], unit, scratch, tally);
     }
     void unit(const MoleculeUnit &unit, int where, double *scratch, Tally &tally) const override {
-        if (k.kept.is_kept(*unit.schedule)) k.kept.solve_molecules(calls[where], unit, scratch, tally);
+        if (k.kept.is_kept(*unit.elimination)) k.kept.solve_molecules(calls[where], unit, scratch, tally);
     }
     void long_chain(const Lane &, int, const Team &, double *, Tally &) const override {}
 };

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/double_pair.hpp"
-#include "core/inverse/careful_molecule.hpp"
+#include "core/inverse/extended_molecule.hpp"
 #include "core/inverse/inverse.hpp"
 
 namespace holonomic {
@@ -37,7 +37,7 @@ private:
     std::vector<double> w_;            // [n_atoms]
     std::vector<std::size_t> i_, j_;   // [n_bonds] atoms within the molecule
     std::vector<PairVector> d_;        // [n_bonds], exact differences of the coordinates
-    CarefulMolecule solver_;
+    ExtendedMolecule solver_;
 };
 
 }  // namespace holonomic

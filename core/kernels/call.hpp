@@ -49,8 +49,8 @@ struct MoleculeLane {
     const int64_t *bonds = nullptr;  // [n_bonds] where they stand instead: only of networks
 };
 
-struct Forest;    // different trees side by side: core/molecules/forests.hpp
-struct Schedule;  // order of elimination of a shape: core/molecules/schedule.hpp
+struct TreeBatch;        // different trees side by side: core/molecules/planned/tree_batches.hpp
+struct EliminationPlan;  // order of elimination of a shape: core/molecules/planned/elimination_plan.hpp
 
 struct Tally;
 
@@ -62,16 +62,17 @@ struct LongTeam {
                 void (*body)(const void *context, int64_t j, double *scratch, Tally &part), const void *context);
 };
 
-// A piece of work: molecules of one shape; masses and lengths may differ among them. Or forests, whose trees are the
-// lanes, one after the other, none regular: for verbs that work on such, and `schedule` is that of the first.
+// A piece of work: molecules of one shape; masses and lengths may differ among them. Or batches of trees, whose trees
+// are the lanes, one after the other, none regular: for verbs that work on such, and `elimination` is that of the
+// first.
 struct MoleculeUnit {
-    const Schedule *schedule;
+    const EliminationPlan *elimination;
     const MoleculeLane *lanes;
     int64_t count;
     bool regular, large;             // as in Unit
     const LongTeam *team = nullptr;  // of a single large molecule
-    const Forest *forests = nullptr;
-    int64_t n_forests = 0;
+    const TreeBatch *tree_batches = nullptr;
+    int64_t n_batches = 0;
     bool roomy = false;  // as in Unit
 };
 
@@ -190,8 +191,8 @@ struct KeptCall {
     unsigned char *left;
 };
 
-// extreme: doubtful, and by the units in which the chain is.
-enum JoinResult { join_good, join_doubtful, join_extreme, join_bad };
+// extreme: flagged, and by the units in which the chain is.
+enum JoinResult { join_good, join_flagged, join_extreme, join_bad };
 
 // A chain of more than longest_lane bonds is worked on in blocks of segments, in phases; within a phase the blocks may
 // be done in any order, by any thread. `store` keeps what passes from phase to phase.
@@ -199,8 +200,8 @@ template <class Call>
 struct InSegments {
     int64_t (*blocks)(int64_t n_bonds);
     int64_t (*bytes)(int64_t n_bonds);  // of the store
-    void (*eliminate)(const Call &, const Lane &, int64_t block, bool careful, double *store, double *scratch);
-    JoinResult (*join)(const Lane &, int64_t blocks, bool careful, double *store);  // the first so many
+    void (*eliminate)(const Call &, const Lane &, int64_t block, bool extended, double *store, double *scratch);
+    JoinResult (*join)(const Lane &, int64_t blocks, bool extended, double *store);  // the first so many
     void (*finish)(const Call &, const Lane &, int64_t block, double *store, double *scratch, Tally &);
 };
 
@@ -213,11 +214,11 @@ struct InWindows {
     bool (*solve)(const Call &, const Lane &, const LongTeam &, double *store, Tally &);
 };
 
-// Molecules that are no linear chains. `scratch` has the largest scratch_bytes of the schedules and forests, aligned
-// to 64. A value that solve writes may stand where its right-hand side did.
+// Molecules that are no linear chains. `scratch` has the largest scratch_bytes of the elimination plans and batches of
+// trees, aligned to 64. A value that solve writes may stand where its right-hand side did.
 struct MoleculeKernels {
-    int64_t (*scratch_bytes)(const Schedule &);
-    int64_t (*forest_bytes)(const Forest &);
+    int64_t (*scratch_bytes)(const EliminationPlan &);
+    int64_t (*batch_bytes)(const TreeBatch &);
     void (*forces)(const ForcesCall &, const MoleculeUnit &, double *scratch, Tally &);
     void (*velocities)(const VelocitiesCall &, const MoleculeUnit &, double *scratch, Tally &);
     void (*positions)(const PositionsCall &, const MoleculeUnit &, double *scratch, Tally &);
@@ -266,7 +267,7 @@ struct TridiagonalKernels {
 struct KeptKernels {
     void (*keep_chains)(const KeepCall &, const Unit &, double *scratch, Tally &);
     void (*solve_chains)(const KeptCall &, const Unit &, double *scratch, Tally &);
-    bool (*is_kept)(const Schedule &);
+    bool (*is_kept)(const EliminationPlan &);
     void (*keep_molecules)(const KeepCall &, const MoleculeUnit &, double *scratch, Tally &);
     void (*solve_molecules)(const KeptCall &, const MoleculeUnit &, double *scratch, Tally &);
 };

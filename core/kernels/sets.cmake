@@ -25,7 +25,7 @@ set(other_kernels
     kernels/kept/molecules.cpp
     kernels/verbs/bodies.cpp
     kernels/verbs/molecules_forces.cpp
-    kernels/verbs/molecules_forests.cpp
+    kernels/verbs/molecules_batches.cpp
     kernels/verbs/molecules_linear.cpp
     kernels/verbs/molecules_metric.cpp
     kernels/verbs/molecules_network.cpp
@@ -36,10 +36,10 @@ set(other_kernels
     kernels/verbs/segments.cpp
     kernels/verbs/tridiagonal.cpp
 )
-set(careful_kernels
-    kernels/careful/linear.cpp
-    kernels/careful/metric.cpp
-    kernels/careful/positions.cpp
+set(extended_kernels
+    kernels/extended/linear.cpp
+    kernels/extended/metric.cpp
+    kernels/extended/positions.cpp
 )
 
 # The kernels have vectors of their own. What gcc makes of their other loops doubles the code of these files and the time
@@ -81,10 +81,10 @@ function(holonomic_kernel_objects name lanes)
     target_link_libraries(${target} PRIVATE holonomic_flags holonomic_warnings)
 endfunction()
 
-# holonomic_kernels(NAME LANES CAREFUL set [NETWORKS set] [TESTS_ONLY] [CHAINS_ONLY] [FLAGS flag...] [TUNING flag...] [NEEDS feature...])
+# holonomic_kernels(NAME LANES EXTENDED set [NETWORKS set] [TESTS_ONLY] [CHAINS_ONLY] [FLAGS flag...] [TUNING flag...] [NEEDS feature...])
 #   NAME         of the namespace, of the object library holonomic_kernels_NAME, and for HOLONOMIC_ISA
 #   LANES        doubles worked on at once
-#   CAREFUL      the careful solver that it uses, see below
+#   EXTENDED     the solver in extended precision that it uses, see below
 #   NETWORKS     another set, whose networks it uses where that one is compiled
 #   TESTS_ONLY   in no library but the one of tests/lanes; runs only if HOLONOMIC_ISA names it
 #   CHAINS_ONLY  runs for chains that fit into lanes, beside another set
@@ -96,15 +96,15 @@ set(test_kernel_objects)
 set(kernel_sets)
 set(test_kernel_sets)
 set(set_names)
-set(careful_solvers)
+set(extended_solvers)
 function(holonomic_kernels name lanes)
-    cmake_parse_arguments(PARSE_ARGV 2 set "TESTS_ONLY;CHAINS_ONLY" "CAREFUL;NETWORKS" "FLAGS;TUNING;NEEDS")
+    cmake_parse_arguments(PARSE_ARGV 2 set "TESTS_ONLY;CHAINS_ONLY" "EXTENDED;NETWORKS" "FLAGS;TUNING;NEEDS")
     if((set_TESTS_ONLY AND NOT (HOLONOMIC_BUILD_TESTS AND HOLONOMIC_TEST_SETS)) OR
        (NOT set_TESTS_ONLY AND NOT name IN_LIST HOLONOMIC_INSTRUCTION_SETS AND NOT (name STREQUAL "baseline" AND HOLONOMIC_BASELINE)))
         return()
     endif()
     set(sources ${chain_kernels} ${other_kernels})
-    set(defines HOL_CAREFUL=${set_CAREFUL})
+    set(defines HOL_EXTENDED=${set_EXTENDED})
     set(kind "")
     if(set_CHAINS_ONLY)
         set(sources ${chain_kernels})
@@ -129,7 +129,7 @@ function(holonomic_kernels name lanes)
     set(${kind}kernel_objects ${${kind}kernel_objects} $<TARGET_OBJECTS:holonomic_kernels_${name}> PARENT_SCOPE)
     set(${kind}kernel_sets "${${kind}kernel_sets} \\\n    set(${name}, (${condition}))" PARENT_SCOPE)
     set(set_names ${set_names} ${name} PARENT_SCOPE)
-    set(careful_solvers ${careful_solvers} ${set_CAREFUL} PARENT_SCOPE)
+    set(extended_solvers ${extended_solvers} ${set_EXTENDED} PARENT_SCOPE)
 endfunction()
 
 # The sets, the one to be preferred first; run/kernel_choice.cpp has the measurements, and where another runs.
@@ -147,12 +147,12 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_G
     set(whole -mmove-max=256 -mstore-max=256)
 endif()
 if(HOLONOMIC_X86_64)
-    holonomic_kernels(avx512vl 4 CAREFUL twofold_fma NETWORKS avx2 NEEDS avx512f avx512dq avx512vl fma
+    holonomic_kernels(avx512vl 4 EXTENDED double_double_fma NETWORKS avx2 NEEDS avx512f avx512dq avx512vl fma
         FLAGS -mavx512f -mavx512dq -mavx512vl -mfma -mprefer-vector-width=256 TUNING ${whole})
-    holonomic_kernels(avx2 4 CAREFUL twofold_fma FLAGS ${avx2} TUNING ${whole} NEEDS avx2 fma)
+    holonomic_kernels(avx2 4 EXTENDED double_double_fma FLAGS ${avx2} TUNING ${whole} NEEDS avx2 fma)
     # Numbers of lanes that other processors have or may have, on any that has AVX2.
     foreach(lanes IN LISTS HOLONOMIC_TEST_LANES)
-        holonomic_kernels(lanes${lanes} ${lanes} TESTS_ONLY CAREFUL twofold_fma FLAGS ${avx2} -O1 -Wno-psabi
+        holonomic_kernels(lanes${lanes} ${lanes} TESTS_ONLY EXTENDED double_double_fma FLAGS ${avx2} -O1 -Wno-psabi
             NEEDS avx2 fma)
     endforeach()
 endif()
@@ -161,23 +161,23 @@ set(small)
 if(HOLONOMIC_X86_64)
     set(small -Os -DHOL_SMALL=1)
 endif()
-holonomic_kernels(baseline 2 CAREFUL twofold FLAGS ${small})
+holonomic_kernels(baseline 2 EXTENDED double_double FLAGS ${small})
 if(HOLONOMIC_X86_64)
     # One lane: chains that come alone, beside any of the sets above. Pairs of components stored at once and loaded one by
     # one, or the other way round, would wait for each other.
-    holonomic_kernels(scalar 1 CHAINS_ONLY CAREFUL twofold_fma FLAGS ${avx2} -fno-tree-slp-vectorize NEEDS avx2 fma)
+    holonomic_kernels(scalar 1 CHAINS_ONLY EXTENDED double_double_fma FLAGS ${avx2} -fno-tree-slp-vectorize NEEDS avx2 fma)
 endif()
 set(HOLONOMIC_KERNEL_SET_NAMES ${set_names} CACHE INTERNAL "")
 
-# The careful solver, in twice the precision for sets that fuse products and sums and for those that don't; and what it
+# The solver in extended precision, in twice the precision for sets that fuse products and sums and for those that don't; and what it
 # leaves to four times the precision, for all.
-holonomic_kernel_objects(fourfold 2 SOURCES ${careful_kernels} DEFINES HOL_FOURFOLD FLAGS $<$<CONFIG:Release>:-Os>)
-list(APPEND kernel_objects $<TARGET_OBJECTS:holonomic_kernels_fourfold>)
-if("twofold" IN_LIST careful_solvers OR HOLONOMIC_BUILD_TESTS)
-    holonomic_kernel_objects(twofold 2 SOURCES ${careful_kernels} FLAGS ${small})
-    list(APPEND kernel_objects $<TARGET_OBJECTS:holonomic_kernels_twofold>)
+holonomic_kernel_objects(quad_double 2 SOURCES ${extended_kernels} DEFINES HOL_QUAD_DOUBLE FLAGS $<$<CONFIG:Release>:-Os>)
+list(APPEND kernel_objects $<TARGET_OBJECTS:holonomic_kernels_quad_double>)
+if("double_double" IN_LIST extended_solvers OR HOLONOMIC_BUILD_TESTS)
+    holonomic_kernel_objects(double_double 2 SOURCES ${extended_kernels} FLAGS ${small})
+    list(APPEND kernel_objects $<TARGET_OBJECTS:holonomic_kernels_double_double>)
 endif()
-if("twofold_fma" IN_LIST careful_solvers)
-    holonomic_kernel_objects(twofold_fma 2 SOURCES ${careful_kernels} FLAGS ${avx2} $<$<CONFIG:Release>:-O2>)
-    list(APPEND kernel_objects $<TARGET_OBJECTS:holonomic_kernels_twofold_fma>)
+if("double_double_fma" IN_LIST extended_solvers)
+    holonomic_kernel_objects(double_double_fma 2 SOURCES ${extended_kernels} FLAGS ${avx2} $<$<CONFIG:Release>:-O2>)
+    list(APPEND kernel_objects $<TARGET_OBJECTS:holonomic_kernels_double_double_fma>)
 endif()

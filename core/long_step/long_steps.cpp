@@ -44,14 +44,15 @@ public:
             }
             MoleculeLane first;
             const MoleculeUnit unit = chains_.unit(plan, piece, &first);
-            const bool mixed = unit.forests && unit.count > 1;
+            const bool mixed = unit.tree_batches && unit.count > 1;
             std::int64_t i = 0;
-            for (std::int64_t f = 0; mixed && f < unit.n_forests; ++f)
-                for (int l = 0; l < unit.forests[f].n_trees; ++l, ++i)
-                    look_at({nullptr, &unit.lanes[i], unit.forests[f].schedule[l], nullptr}, unit.lanes[i].molecule);
+            for (std::int64_t f = 0; mixed && f < unit.n_batches; ++f)
+                for (int l = 0; l < unit.tree_batches[f].n_trees; ++l, ++i)
+                    look_at({nullptr, &unit.lanes[i], unit.tree_batches[f].elimination[l], nullptr},
+                            unit.lanes[i].molecule);
             for (; i < unit.count; ++i) {
                 const MoleculeLane lane = lane_of(unit, i);
-                look_at({nullptr, &lane, unit.schedule, unit.forests}, lane.molecule);
+                look_at({nullptr, &lane, unit.elimination, unit.tree_batches}, lane.molecule);
             }
         }
         total_.n_bad = first_.n_bad - n_solved_;

@@ -63,8 +63,8 @@ bool OneMolecule::solve(PositionsCall call, Tally &tally) {
         lane.first_atom = lane.first_bond = 0;
         lane.atoms = lane.bonds = nullptr;
         lane.shared = nullptr;
-        const MoleculeUnit unit{planned_.schedule,      &lane, 1, true, false, nullptr, planned_.forest,
-                                planned_.forest ? 1 : 0};
+        const MoleculeUnit unit{planned_.elimination,  &lane, 1, true, false, nullptr, planned_.batch,
+                                planned_.batch ? 1 : 0};
         kernels().molecules.positions(call, unit, scratch_of_this_thread(bytes), own);
     } else {
         Lane lane = *planned_.chain;

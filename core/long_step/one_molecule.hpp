@@ -11,10 +11,10 @@ namespace holonomic {
 
 // A molecule as the plan has it.
 struct Planned {
-    const Lane *chain;             // or null:
-    const MoleculeLane *molecule;  //
-    const Schedule *schedule;      //
-    const Forest *forest;          // a large tree's own, or null
+    const Lane *chain;                   // or null:
+    const MoleculeLane *molecule;        //
+    const EliminationPlan *elimination;  //
+    const TreeBatch *batch;              // a large tree's own, or null
 };
 
 class OneMolecule {

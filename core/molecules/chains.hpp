@@ -8,16 +8,16 @@
 
 #include "core/caller/box.hpp"
 #include "core/kernels/call.hpp"
-#include "core/molecules/atom_use.hpp"
-#include "core/molecules/copied.hpp"
-#include "core/molecules/find.hpp"
-#include "core/molecules/group.hpp"
-#include "core/molecules/kind.hpp"
-#include "core/molecules/labels.hpp"
-#include "core/molecules/masses.hpp"
-#include "core/molecules/molecule.hpp"
-#include "core/molecules/plan.hpp"
-#include "core/molecules/shape.hpp"
+#include "core/molecules/asked/labels.hpp"
+#include "core/molecules/given/atom_use.hpp"
+#include "core/molecules/given/copied.hpp"
+#include "core/molecules/given/find.hpp"
+#include "core/molecules/given/group.hpp"
+#include "core/molecules/given/kind.hpp"
+#include "core/molecules/given/masses.hpp"
+#include "core/molecules/given/molecule.hpp"
+#include "core/molecules/given/shape.hpp"
+#include "core/molecules/planned/plan.hpp"
 
 namespace holonomic {
 

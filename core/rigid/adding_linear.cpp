@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/molecules/batch.hpp"
 #include "core/molecules/chains.hpp"
-#include "core/molecules/memory_limit.hpp"
+#include "core/molecules/given/batch.hpp"
+#include "core/molecules/given/memory_limit.hpp"
 #include "core/rigid/bodies.hpp"
 #include "core/rigid/cliques.hpp"
 #include "core/rigid/implied.hpp"

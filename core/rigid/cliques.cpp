@@ -1,7 +1,7 @@
 #include "core/rigid/cliques.hpp"
 
 #include "core/rigid/fit.hpp"
-#include "core/rigid/flat_ring.hpp"
+#include "core/rigid/planar_ring.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,7 @@ std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 class Search {
 public:
-    using Atom = std::int64_t;  // what FlatRing asks for
+    using Atom = std::int64_t;  // what PlanarRing asks for
     template <class Each>
     void for_partners(Atom atom, const Each &each) const {
         for (const Partner &partner : bonds_of_.at(atom))
@@ -212,7 +212,7 @@ private:
     void look_for_ring(std::int64_t bond, std::int64_t &steps) {
         const std::int64_t i = list_.pairs[2 * bond], j = list_.pairs[2 * bond + 1];
         if (i == j || is_left_out(bond) || !is_free(i) || !is_free(j)) return;
-        FlatRing<Search> flat(*this, std::min(i, j), std::max(i, j), tolerance_, steps);
+        PlanarRing<Search> flat(*this, std::min(i, j), std::max(i, j), tolerance_, steps);
         if (flat.find()) take(flat.ring(), flat.places(), 2);
     }
 

@@ -1,5 +1,5 @@
 // Lists of distances that depend on each other: three atoms on a line, four in a plane, five and more, each with all of
-// the others, and rings that are held in a plane (flat_ring.hpp), are rigid bodies, with all atoms that are held to
+// the others, and rings that are held in a plane (planar_ring.hpp), are rigid bodies, with all atoms that are held to
 // them by more distances than their places have coordinates. Their lengths say what they look
 // like, but for the mirror image, which a body follows anyway.
 #pragma once
@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/molecules/find.hpp"
+#include "core/molecules/given/find.hpp"
 #include "core/rigid/linear_groups.hpp"
 
 namespace holonomic::rigid {

@@ -5,7 +5,7 @@
 
 #include "core/rigid/cliques.hpp"
 #include "core/rigid/fit.hpp"
-#include "core/rigid/flat_ring.hpp"
+#include "core/rigid/planar_ring.hpp"
 
 namespace holonomic::rigid {
 
@@ -103,7 +103,7 @@ bool has_dependent_lengths(const holonomic::Shape &shape, const double *w, const
         if (is_lowest_of_flat(partners, i, tolerance)) return true;
         for (const auto &partner : partners.of(i))
             if (i < partner.first && partners.of(i).size() > 3 &&
-                FlatRing<Partners>(partners, i, partner.first, tolerance, steps).find())
+                PlanarRing<Partners>(partners, i, partner.first, tolerance, steps).find())
                 return true;
     }
     return false;

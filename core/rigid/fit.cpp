@@ -126,9 +126,9 @@ int decimals_of(const Distances &wanted, int most, bool of_squares) {
             const double x = of_squares ? length * scale * (length * scale) : length * scale;
             // Coordinates far from the origin are off by more than these squares are.
             const double of_places = of_squares ? std::min(1e-12 * scale * scale, 0.03) : 0;
-            const double slack = std::max(4 * epsilon * x, of_places);
-            if (length > 0) chance *= std::min(1.0, 2 * slack);
-            return (length == 0 || x >= 0.5) && std::fabs(x - std::round(x)) <= slack;
+            const double margin = std::max(4 * epsilon * x, of_places);
+            if (length > 0) chance *= std::min(1.0, 2 * margin);
+            return (length == 0 || x >= 0.5) && std::fabs(x - std::round(x)) <= margin;
         };
         if (std::all_of(values.begin(), values.end(), fits)) return chance < likely ? p : -1;
     }

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/molecules/hash.hpp"
+#include "core/molecules/given/hash.hpp"
 #include "core/rigid/relations.hpp"
 
 namespace holonomic::rigid {

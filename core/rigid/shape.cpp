@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/molecules/elimination_order.hpp"
+#include "core/molecules/planned/elimination_order.hpp"
 
 namespace holonomic::rigid {
 

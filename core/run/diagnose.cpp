@@ -5,7 +5,7 @@
 
 #include "core/caller/box.hpp"
 #include "core/caller/packed_array.hpp"
-#include "core/inverse/careful_molecule.hpp"
+#include "core/inverse/extended_molecule.hpp"
 #include "core/run/bond_words.hpp"
 
 namespace holonomic {
@@ -20,10 +20,10 @@ bool bond_vector(const AtomArray &r, const Box &box, const Molecule &m, std::int
     return d[0] != 0 || d[1] != 0 || d[2] != 0;
 }
 
-// Of a molecule that is no linear chain, by the careful solver: the first bond whose pivot vanishes; -1 if none does,
-// -2 if the bond vectors are of no use.
+// Of a molecule that is no linear chain, by the extended-precision solver: the first bond whose pivot vanishes; -1 if
+// none does, -2 if the bond vectors are of no use.
 std::int64_t dependent_bond(const Molecule &molecule, const AtomArray &r, const Box &box) {
-    const CarefulMolecule solver(molecule, r, box);
+    const ExtendedMolecule solver(molecule, r, box);
     if (solver.good()) return -1;
     return solver.dependent_bond() < 0 ? -2 : solver.dependent_bond();
 }
@@ -73,7 +73,7 @@ public:
             double d[3];
             if (!bond_vector(r, box_, m_, k, d)) return of_bond(k, "has length zero");
         }
-        if (m_.shape && m_.shape->schedule->network && !m_.shape->schedule->careful) {
+        if (m_.shape && m_.shape->elimination->network && !m_.shape->elimination->extended) {
             if (otherwise == Status::no_convergence) return out_of_reach();
             return finish(make_error(Status::degenerate,
                                      "%s: the iteration for its multipliers does not converge: its bonds depend on "

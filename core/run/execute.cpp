@@ -7,8 +7,8 @@
 
 #include "core/caller/environment.hpp"
 #include "core/error.hpp"
-#include "core/kernels/molecules/forest/forest.hpp"
-#include "core/molecules/way.hpp"
+#include "core/kernels/molecules/tree_batch/batch.hpp"
+#include "core/molecules/planned/way.hpp"
 #include "core/run/lane.hpp"
 #include "core/run/outcomes.hpp"
 #include "core/run/thread_memory.hpp"
@@ -72,7 +72,7 @@ void share(int n_threads, std::int64_t scratch_bytes, std::int64_t store_bytes, 
 bool is_shared_molecule(const Plan &plan, std::int64_t p, int n_threads, bool paths) {
     const Plan::Piece &piece = plan.pieces[static_cast<std::size_t>(p)];
     if (piece.shape == linear || piece.count != 1) return false;
-    const Schedule &s = *plan.schedules[static_cast<std::size_t>(piece.shape)];
+    const EliminationPlan &s = *plan.elimination_plans[static_cast<std::size_t>(piece.shape)];
     const std::int64_t n = s.n_pieces, n_molecules = static_cast<std::int64_t>(plan.pieces.size());
     const bool large = n_molecules < n_threads || static_cast<std::int64_t>(s.n_bonds) * n_threads > plan.n_bonds;
     if (large && has_shares(s, paths)) return true;
@@ -88,21 +88,21 @@ std::int64_t long_chain_bonds(const Chains &chains, const Plan &plan, std::int64
     return n > longest_lane ? n : 0;
 }
 
-// Different trees side by side, or those of each shape for a verb that has no way for forests: the plan has them one
-// after the other.
+// Different trees side by side, or those of each shape for a verb that has no way for batches of trees: the plan has
+// them one after the other.
 void work_on_molecules(const Work &work, const MoleculeUnit &unit, int where, double *scratch, Tally &tally) {
-    if (!unit.forests || work.walks_forests()) return work.unit(unit, where, scratch, tally);
+    if (!unit.tree_batches || work.walks_batches()) return work.unit(unit, where, scratch, tally);
     MoleculeUnit alike{nullptr, unit.lanes, 0, false, unit.large};
     const auto work_on_alike = [&] {
         if (alike.count > 0) work.unit(alike, where, scratch, tally);
         alike.lanes += alike.count;
         alike.count = 0;
     };
-    for (std::int64_t i = 0; i < unit.n_forests; ++i)
-        for (int l = 0; l < unit.forests[i].n_trees; ++l, ++alike.count) {
-            const Schedule *const shape = unit.forests[i].schedule[l];
-            if (shape != alike.schedule) work_on_alike();
-            alike.schedule = shape;
+    for (std::int64_t i = 0; i < unit.n_batches; ++i)
+        for (int l = 0; l < unit.tree_batches[i].n_trees; ++l, ++alike.count) {
+            const EliminationPlan *const shape = unit.tree_batches[i].elimination[l];
+            if (shape != alike.elimination) work_on_alike();
+            alike.elimination = shape;
         }
     work_on_alike();
 }
@@ -113,11 +113,12 @@ Unit one_of(const Unit &unit, std::int64_t i, Lane *lane) {
 }
 MoleculeUnit one_of(const MoleculeUnit &unit, std::int64_t i, MoleculeLane *lane) {
     *lane = lane_of(unit, i);
-    MoleculeUnit one{unit.schedule, lane, 1, true, unit.large};
-    if (unit.forests && unit.count == 1) one = unit;
-    for (std::int64_t f = 0, first = 0; unit.forests && unit.count > 1 && f < unit.n_forests; ++f) {
-        if (i >= first && i < first + unit.forests[f].n_trees) one.schedule = unit.forests[f].schedule[i - first];
-        first += unit.forests[f].n_trees;
+    MoleculeUnit one{unit.elimination, lane, 1, true, unit.large};
+    if (unit.tree_batches && unit.count == 1) one = unit;
+    for (std::int64_t f = 0, first = 0; unit.tree_batches && unit.count > 1 && f < unit.n_batches; ++f) {
+        if (i >= first && i < first + unit.tree_batches[f].n_trees)
+            one.elimination = unit.tree_batches[f].elimination[i - first];
+        first += unit.tree_batches[f].n_trees;
     }
     return one;
 }
@@ -256,23 +257,24 @@ private:
         }
     }
     void work_on_each(const MoleculeUnit &unit, int where, double *scratch, Tally &tally) const {
-        const auto one = [&](const Schedule *schedule, const MoleculeLane &lane, bool regular) {
-            const MoleculeUnit alone{schedule, &lane, 1, regular, unit.large, unit.team};
+        const auto one = [&](const EliminationPlan *elimination, const MoleculeLane &lane, bool regular) {
+            const MoleculeUnit alone{elimination, &lane, 1, regular, unit.large, unit.team};
             with_outcome(outcome_of(lane.molecule), tally, [&](Tally &own) {
                 in_its_units(work_, alone, where, scratch, own,
                              [&](Tally &of_one) { work_.unit(alone, where, scratch, of_one); });
             });
         };
-        if (unit.forests && unit.count == 1)
+        if (unit.tree_batches && unit.count == 1)
             return with_outcome(outcome_of(unit.lanes->molecule), tally, [&](Tally &own) {
                 in_its_units(work_, unit, where, scratch, own,
                              [&](Tally &of_one) { work_on_molecules(work_, unit, where, scratch, of_one); });
             });
         const MoleculeLane *lane = unit.lanes;
-        for (std::int64_t i = 0; i < unit.n_forests; ++i)
-            for (int l = 0; l < unit.forests[i].n_trees; ++l) one(unit.forests[i].schedule[l], *lane++, true);
-        for (std::int64_t i = 0; !unit.forests && i < unit.count; ++i)
-            one(unit.schedule, lane_of(unit, i), unit.regular);
+        for (std::int64_t i = 0; i < unit.n_batches; ++i)
+            for (int l = 0; l < unit.tree_batches[i].n_trees; ++l)
+                one(unit.tree_batches[i].elimination[l], *lane++, true);
+        for (std::int64_t i = 0; !unit.tree_batches && i < unit.count; ++i)
+            one(unit.elimination, lane_of(unit, i), unit.regular);
     }
 
     OutcomeOf *outcome_of(std::int64_t molecule) const { return outcomes_ ? outcomes_ + molecule : nullptr; }

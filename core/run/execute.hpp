@@ -49,7 +49,7 @@ public:
     virtual void unit(const Unit &unit, int where, double *scratch, Tally &tally) const = 0;
     virtual void unit(const MoleculeUnit &unit, int where, double *scratch, Tally &tally) const = 0;
     // Whether it has a way of its own for different trees side by side; else each comes as a unit.
-    virtual bool walks_forests() const { return false; }
+    virtual bool walks_batches() const { return false; }
     // Scratch memory that it needs, if that is more than the plan says.
     virtual std::int64_t scratch_bytes() const { return 0; }
     // Whether threads share the work on one large molecule that has paths.
@@ -106,19 +106,19 @@ template <class Phases, class Call>
 void solve_long_chain(const Phases &phases, const Call &call, const Lane &lane, const Team &team, double *store,
                       Tally &tally) {
     const std::int64_t blocks = phases.blocks(lane.n_bonds);
-    JoinResult result = join_doubtful;
-    for (int attempt = 0; attempt < 2 && result == join_doubtful; ++attempt) {
-        const bool careful = attempt == 1;
-        // A few blocks before all others: a chain that is in doubt there needs no plain products elsewhere.
+    JoinResult result = join_flagged;
+    for (int attempt = 0; attempt < 2 && result == join_flagged; ++attempt) {
+        const bool extended = attempt == 1;
+        // A few blocks before all others: a chain that is flagged there needs no plain products elsewhere.
         std::int64_t done = 0;
         for (const std::int64_t end : {std::min<std::int64_t>(blocks, 8), blocks}) {
             if (end == done) break;
             team.for_each(end - done, tally, [&](std::int64_t j, double *scratch, Tally &) {
-                phases.eliminate(call, lane, done + j, careful, store, scratch);
+                phases.eliminate(call, lane, done + j, extended, store, scratch);
             });
             done = end;
-            result = phases.join(lane, end, careful, store);
-            if (result == join_extreme && call.rescaled) result = join_doubtful;  // nothing better is to be had
+            result = phases.join(lane, end, extended, store);
+            if (result == join_extreme && call.rescaled) result = join_flagged;  // nothing better is to be had
             if (result != join_good) break;
         }
     }

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "core/kernels/call.hpp"
-#include "core/kernels/molecules/schedule.hpp"
+#include "core/kernels/molecules/elimination_plan.hpp"
 
 namespace holonomic {
 
@@ -26,7 +26,7 @@ inline Lane lane_of(const Unit &unit, std::int64_t i) {
 }
 inline MoleculeLane lane_of(const MoleculeUnit &unit, std::int64_t i) {
     if (!unit.regular) return unit.lanes[i];
-    MoleculeLane lane = shifted(unit.lanes[0], i * unit.schedule->n_atoms, i * unit.schedule->n_bonds);
+    MoleculeLane lane = shifted(unit.lanes[0], i * unit.elimination->n_atoms, i * unit.elimination->n_bonds);
     lane.molecule += i;
     return lane;
 }

@@ -39,12 +39,12 @@ bool overflows(double value, int e, bool is_float) {
 KernelMolecule::KernelMolecule(const Lane &lane)
     : n_atoms(lane.n_bonds + 1), n_bonds(lane.n_bonds), first_atom(lane.first_atom), atoms(lane.atoms), w(lane.w),
       length(lane.length), w_uniform(lane.w_uniform), length_uniform(lane.length_uniform), first_bond(lane.first_bond),
-      bonds(nullptr), shared(nullptr), schedule(nullptr), number(lane.chain) {}
+      bonds(nullptr), shared(nullptr), elimination(nullptr), number(lane.chain) {}
 
-KernelMolecule::KernelMolecule(const Schedule &s, const MoleculeLane &lane)
+KernelMolecule::KernelMolecule(const EliminationPlan &s, const MoleculeLane &lane)
     : n_atoms(s.n_atoms), n_bonds(s.n_bonds), first_atom(lane.first_atom), atoms(lane.atoms), w(lane.w),
       length(lane.length), w_uniform(0), length_uniform(0), first_bond(lane.first_bond), bonds(lane.bonds),
-      shared(lane.shared), schedule(&s), number(lane.molecule) {}
+      shared(lane.shared), elimination(&s), number(lane.molecule) {}
 
 Rescaled::Rescaled(const KernelMolecule &molecule, const Powers &of) : units(of), one_(molecule) {
     const std::int64_t atoms = rounded_up(8 * (3 * one_.n_atoms + 3 * room_behind)),
@@ -172,8 +172,8 @@ bool find_units(const KernelMolecule &m, const AtomArray &r, const Box &box, Pow
     double longest = 0, sum = 0;  // max() may lose a NaN, the sum keeps it
     for (std::int64_t k = 0; k < m.n_bonds; ++k) {
         double from[3], to[3], d[3];
-        read_atom(r, atom_of(m, m.schedule ? m.schedule->atom_i[k] : k), from);
-        read_atom(r, atom_of(m, m.schedule ? m.schedule->atom_j[k] : k + 1), to);
+        read_atom(r, atom_of(m, m.elimination ? m.elimination->atom_i[k] : k), from);
+        read_atom(r, atom_of(m, m.elimination ? m.elimination->atom_j[k] : k + 1), to);
         bond_vector(box, from, to, d);
         for (const double component : d) {
             longest = std::max(longest, std::fabs(component));

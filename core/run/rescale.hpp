@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "core/kernels/molecules/schedule.hpp"
+#include "core/kernels/molecules/elimination_plan.hpp"
 #include "core/kernels/tally.hpp"
-#include "core/molecules/ordinary.hpp"
+#include "core/molecules/given/ordinary.hpp"
 
 namespace holonomic {
 
@@ -22,11 +22,11 @@ struct KernelMolecule {
     std::int64_t first_bond;
     const std::int64_t *bonds;
     const unsigned char *shared;
-    const Schedule *schedule;  // or nullptr: each bond joins an atom to the next
+    const EliminationPlan *elimination;  // or nullptr: each bond joins an atom to the next
     std::int64_t number;
 
     explicit KernelMolecule(const Lane &lane);
-    KernelMolecule(const Schedule &schedule, const MoleculeLane &lane);
+    KernelMolecule(const EliminationPlan &elimination, const MoleculeLane &lane);
     std::int64_t bond(std::int64_t k) const { return bonds ? bonds[k] : first_bond + k; }
 };
 
@@ -98,7 +98,7 @@ template <class Call>
 void mark(Call &call) {
     call.rescaled = true;
 }
-inline void mark(MetricCall &) {}  // its careful ways take any units
+inline void mark(MetricCall &) {}  // its extended ways take any units
 
 // Whether it may be good in them if it was bad as it is: else what does not converge would be tried twice.
 template <class Call>
@@ -116,10 +116,10 @@ inline Unit unit_of(const Rescaled &copy, const Unit &one, Lane *lane) {
 }
 inline MoleculeUnit unit_of(const Rescaled &copy, const MoleculeUnit &one, MoleculeLane *lane) {
     *lane = copy.lane_of(one.lanes[0]);
-    return {one.schedule, lane, 1, true, false, nullptr, one.forests, one.n_forests};
+    return {one.elimination, lane, 1, true, false, nullptr, one.tree_batches, one.n_batches};
 }
 inline KernelMolecule one_of(const Unit &one) { return KernelMolecule(one.lanes[0]); }
-inline KernelMolecule one_of(const MoleculeUnit &one) { return KernelMolecule(*one.schedule, one.lanes[0]); }
+inline KernelMolecule one_of(const MoleculeUnit &one) { return KernelMolecule(*one.elimination, one.lanes[0]); }
 
 // Does a unit of one molecule in ordinary units: run(call, unit, tally) calls the kernel. Returns false, with nothing
 // written, if that is bad, too.

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/kernels/molecules/network/network_plan.hpp"
+#include "core/kernels/molecules/network/plan.hpp"
 
 namespace fronts_case
 {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/molecules/find.hpp"
+#include "core/molecules/given/find.hpp"
 
 using holonomic::BondList;
 using holonomic::Error;

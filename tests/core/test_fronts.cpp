@@ -5,10 +5,10 @@
 #include <cstdlib>
 #include <random>
 
-#include "core/molecules/bisection.hpp"
-#include "core/molecules/elimination_order.hpp"
-#include "core/molecules/network.hpp"
-#include "core/molecules/schedule.hpp"
+#include "core/molecules/planned/bisection.hpp"
+#include "core/molecules/planned/elimination_order.hpp"
+#include "core/molecules/planned/elimination_plan.hpp"
+#include "core/molecules/planned/network.hpp"
 #include "fronts_case.hpp"
 
 using namespace fronts_case;
@@ -134,11 +134,11 @@ struct Matrix {
     }
 };
 
-std::unique_ptr<const holonomic::Schedule> network_of(const Bonds &b)
+std::unique_ptr<const holonomic::EliminationPlan> network_of(const Bonds &b)
 {
     std::vector<unsigned char> fixed(at(b.n_atoms), 0);
-    return holonomic::make_schedule(b.n_atoms, static_cast<std::int32_t>(b.pairs.size() / 2), b.pairs.data(),
-                                    fixed.data(), holonomic::no_limit);
+    return holonomic::make_elimination_plan(b.n_atoms, static_cast<std::int32_t>(b.pairs.size() / 2), b.pairs.data(),
+                                            fixed.data(), holonomic::no_limit);
 }
 
 typedef bool (*Solve)(const holonomic::NetworkPlan &, bool, const Terms &, double, int, std::vector<double> &);
@@ -146,9 +146,9 @@ const Solve solves[] = {fronts2::solve, fronts4::solve, fronts8::solve, fronts16
 
 void they_solve_what_a_dense_elimination_does(const char *name, const Bonds &b, std::mt19937 &random)
 {
-    const auto schedule = network_of(b);
-    require(schedule->network, name, "is no network");
-    const holonomic::NetworkPlan &s = *schedule->network;
+    const auto elimination = network_of(b);
+    require(elimination->network, name, "is no network");
+    const holonomic::NetworkPlan &s = *elimination->network;
     require(s.fronts.n_fronts > 3, name, "has no fronts");
     for (const bool symmetric : {true, false}) {
         const Matrix matrix(s, symmetric, 0.2, random);
@@ -170,18 +170,18 @@ void they_solve_what_a_dense_elimination_does(const char *name, const Bonds &b, 
     }
 }
 
-// So many that the trunk is shared among them, too.
+// So many that the separator is shared among them, too.
 void threads_change_no_digit()
 {
     std::mt19937 random(3);
-    const auto schedule = network_of(tangle(600, 1320, random));
-    const holonomic::NetworkPlan &s = *schedule->network;
+    const auto elimination = network_of(tangle(600, 1320, random));
+    const holonomic::NetworkPlan &s = *elimination->network;
     bool is_large = false;
     for (std::int32_t f = 0; f < s.fronts.n_fronts; ++f) {
         const holonomic::FrontPlan::Front &front = s.fronts.front[f];
-        is_large = is_large || (front.branch < 0 && front.n_rows - front.n_own >= 192);
+        is_large = is_large || (front.subtree < 0 && front.n_rows - front.n_own >= 192);
     }
-    require(s.fronts.n_branches > 1 && is_large, "a large tangle", "has nothing to share");
+    require(s.fronts.n_subtrees > 1 && is_large, "a large tangle", "has nothing to share");
     for (const bool symmetric : {true, false}) {
         const Matrix matrix(s, symmetric, 0.2, random);
         std::vector<double> rhs(matrix.n, 1);
@@ -226,10 +226,10 @@ void they_take_no_more_memory_than_they_may()
 {
     std::mt19937 random(5);
     const Bonds b = lattice(8, 1, random);
-    const auto schedule = network_of(b);
-    require(schedule->network && schedule->network->fronts.n_fronts > 0, "a lattice", "has no fronts");
+    const auto elimination = network_of(b);
+    require(elimination->network && elimination->network->fronts.n_fronts > 0, "a lattice", "has no fronts");
     holonomic::NetworkArrays arrays;
-    holonomic::make_network(*schedule, 100000, arrays);
+    holonomic::make_network(*elimination, 100000, arrays);
     require(arrays.plan.fronts.n_fronts == 0 && arrays.plan.n_unknowns > 0, "a lattice", "has fronts above the limit");
 }
 

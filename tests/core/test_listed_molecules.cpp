@@ -2,12 +2,12 @@
 // lanes.
 #include <cmath>
 
-#include "careful_case.hpp"
 #include "core/forces.hpp"
 #include "core/metric.hpp"
 #include "core/molecules/chains.hpp"
+#include "extended_case.hpp"
 
-using namespace careful_case;
+using namespace extended_case;
 using holonomic::packed_array;
 
 namespace

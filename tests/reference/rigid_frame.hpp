@@ -91,7 +91,7 @@ private:
 
     void note_ratio(const REAL &square)
     {
-        if (square > thin() * thin() / REAL(100) && square < thin() * thin() * REAL(100)) facts.doubtful = true;
+        if (square > thin() * thin() / REAL(100) && square < thin() * thin() * REAL(100)) facts.flagged = true;
     }
 
     void lift()
@@ -136,7 +136,7 @@ private:
         facts.rank = static_cast<int>(rank);
         for (std::size_t a = 0; a < atoms.size(); ++a) {
             const REAL far = length(off_[a]);
-            if (far > most / REAL(10) && far < most * REAL(10)) facts.doubtful = true;
+            if (far > most / REAL(10) && far < most * REAL(10)) facts.flagged = true;
             if (rank == 2 && p.mass[atoms[a]] == 0 && far > most)
                 facts.off_plane.push_back(atoms[a]);
             else

@@ -56,9 +56,9 @@ struct rigid_level {
 
 /** What a body looks like. */
 struct body_facts {
-    int rank = 0;           ///< 1: on a line, 2: in a plane, 3; an axis below 1e-8 of the longest counts as none
-    bool doubtful = false;  ///< an axis, or the distance of an atom from line or plane, is within a decade of that
-    bool refused = false;   ///< a mass is farther from the line or plane of the others than that, or a site from a line
+    int rank = 0;          ///< 1: on a line, 2: in a plane, 3; an axis below 1e-8 of the longest counts as none
+    bool flagged = false;  ///< an axis, or the distance of an atom from line or plane, is within a decade of that
+    bool refused = false;  ///< a mass is farther from the line or plane of the others than that, or a site from a line
     std::vector<std::size_t> off_plane;  ///< massless sites that are farther from a plane
 };
 body_facts facts_of_body(const rigid_problem &p, std::size_t body);

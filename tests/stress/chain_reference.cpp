@@ -82,7 +82,7 @@ void fill_metric(const exact_chain &c, const elimination &z, const sizes &s, con
     std::vector<quad> backward(n);
     for (std::size_t k = n; k-- > 0;)
         backward[k] = k + 1 < n ? z.diagonal[k] - z.beside[k + 1] * z.beside[k + 1] / backward[k + 1] : z.diagonal[k];
-    long_vec h(n + 1, 0), normal(3 * (n + 1), 0), phi(3 * (n + 2), 0), scale(n + 2, 0), slack(n + 2, 0);
+    long_vec h(n + 1, 0), normal(3 * (n + 1), 0), phi(3 * (n + 2), 0), scale(n + 2, 0), margin(n + 2, 0);
     for (std::size_t k = 0; k < n; ++k) {
         const quad whole = z.pivot[k] + backward[k] - z.diagonal[k];
         if (!(whole > 0)) return;
@@ -93,7 +93,7 @@ void fill_metric(const exact_chain &c, const elimination &z, const sizes &s, con
         if (k == 0) continue;
         h[k] = s.w[k] * out.step[k] * diagonal /
                (std::sqrt(s.w[k - 1] + s.w[k]) * std::sqrt(s.w[k] + s.w[k + 1]));  // of M^-1, M_kk = w + w'
-        out.log_det_slack += 2 * rounding_of_products * std::fabs(h[k]);           // d ln det M / d cosine = 2 h
+        out.log_det_margin += 2 * rounding_of_products * std::fabs(h[k]);          // d ln det M / d cosine = 2 h
         const quad3 area = cross(c.d[k - 1], c.d[k]);
         for (std::size_t x = 0; x < 3; ++x) normal[3 * k + x] = narrow(area[x]) / s.size[k - 1] / s.size[k];
     }
@@ -117,12 +117,12 @@ void fill_metric(const exact_chain &c, const elimination &z, const sizes &s, con
         }
         scale[k + 1] = (weight(k) + weight(k + 1)) / s.size[k];
         // of the sines, and of the cosines that h has as a factor
-        slack[k + 1] = rounding_of_products * (loose(k) + loose(k + 1)) / s.size[k];
+        margin[k + 1] = rounding_of_products * (loose(k) + loose(k + 1)) / s.size[k];
     }
     for (std::size_t i = 0; i <= n; ++i) {
         for (std::size_t x = 0; x < 3; ++x) out.force.push_back(phi[3 * i + x] - phi[3 * i + 3 + x]);
         out.force_scale.push_back(scale[i] + scale[i + 1]);
-        out.force_slack.push_back(slack[i] + slack[i + 1]);
+        out.force_margin.push_back(margin[i] + margin[i + 1]);
     }
     out.log_det = log_det(z);
     out.regular = true;

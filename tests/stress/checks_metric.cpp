@@ -74,10 +74,10 @@ void check_metric(const hostile_chain &c, const chain_reference &ref, const arra
         // The reference takes its logarithm of a product that may differ from 1 by less than it can hold.
         const long double rounding = static_cast<long double>(c.n_bonds) * solution_epsilon();
         out.compare(LOG_DET, alone.log_det[0], exact.log_det,
-                    k_eps * std::fabs(exact.log_det) + rounding + 16 * exact.log_det_slack);
+                    k_eps * std::fabs(exact.log_det) + rounding + 16 * exact.log_det_margin);
         for (std::size_t i = 0; i < exact.force.size(); ++i)
             out.compare(FIXMAN_FORCE, alone.fixman[i], exact.force[i],
-                        2 * k_eps * exact.force_scale[i / 3] + 16 * exact.force_slack[i / 3]);
+                        2 * k_eps * exact.force_scale[i / 3] + 16 * exact.force_margin[i / 3]);
     }
     check_inverse(c, ref, a, alone, out);
 }

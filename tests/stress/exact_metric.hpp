@@ -20,8 +20,8 @@ struct exact_metric {
     std::vector<long double> force, force_scale; /**< of the Fixman potential over kT, [n+1][3] and [n+1] */
     /** What the sines and cosines of joints, known to the rounding of twice the precision, leave of these;
      * chain_reference alone. */
-    std::vector<long double> force_slack;
-    long double log_det_slack = 0;
+    std::vector<long double> force_margin;
+    long double log_det_margin = 0;
     std::vector<long double> diagonal, step; /**< (Z~^-1)_kk and (Z~^-1)_{k-1,k} / (Z~^-1)_kk */
 
     /** (Z~^-1)_ij, i <= j counted from 0. */

@@ -385,7 +385,7 @@ bool is_clear(hostile_body &m)
     m.refused = false;
     for (std::size_t b = 0; b < m.p.bodies.size(); ++b) {
         const reference::body_facts facts = reference::facts_of_body(m.p, b);
-        if (facts.doubtful || facts.rank == 0) return false;
+        if (facts.flagged || facts.rank == 0) return false;
         m.refused = m.refused || facts.refused;
         for (const auto &pair : m.p.pairs)
             for (const std::size_t end : pair)

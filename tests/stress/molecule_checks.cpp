@@ -41,7 +41,7 @@ long double linear_eps(const hostile_molecule &m)
  * away as products of many factors. In graphs that elimination has to subtract for, a multiplier that is zero because
  * its atom can't move comes out as the rounding of the residual in twice the precision: there 1e-40.
  */
-long double slack(const hostile_molecule &m, const molecule_solution &s, long double bound)
+long double margin(const hostile_molecule &m, const molecule_solution &s, long double bound)
 {
     const long double least = m.shape == GRAPHS ? 1e-40L : 1e-80L;
     return bound * least * *std::max_element(s.lambda_scale, s.lambda_scale + s.n_bonds);
@@ -50,7 +50,7 @@ long double slack(const hostile_molecule &m, const molecule_solution &s, long do
 void check_multipliers(const hostile_molecule &m, const molecule_solution &s, const numbers &lambda,
                        molecule_quantity q, molecule_verdict &out)
 {
-    const long double k = linear_eps(m), tail = slack(m, s, k);
+    const long double k = linear_eps(m), tail = margin(m, s, k);
     for (std::size_t b = 0; b < m.length.size(); ++b)
         out.compare(q, lambda[b], s.lambda[b], k * s.lambda_scale[b] + (s.lambda_scale[b] > 0 ? tail : 0));
 }
@@ -63,7 +63,7 @@ void check_forces(const hostile_molecule &m, const molecule_reference &exact, co
     const molecule_solution &s = exact.forces.s;
     check_multipliers(m, s, alone.lambda, M_LAMBDA, out);
     const long double k = linear_eps(m),
-                      pull = 2 * slack(m, s, k) * *std::max_element(m.length.begin(), m.length.end());
+                      pull = 2 * margin(m, s, k) * *std::max_element(m.length.begin(), m.length.end());
     for (std::size_t i = 0; i < m.r.size(); ++i)
         if (s.g_scale[i / 3] > 0 || !is_blank(alone.g[i]))  // atoms without a constraint are not written
             out.compare(M_FORCE, alone.g[i], s.g[i], k * s.g_scale[i / 3] + (s.g_scale[i / 3] > 0 ? pull : 0));
@@ -169,7 +169,7 @@ bool is_linear(const placement &a, std::size_t b)
 void compare_positions(const placement &a, const hostile_molecule &m, const molecule_solution &s,
                        const molecule_results &alone, molecule_verdict &out)
 {
-    const long double k = k_eps(m), tail = slack(m, s, k);
+    const long double k = k_eps(m), tail = margin(m, s, k);
     for (std::size_t b = 0; b < m.length.size(); ++b)
         out.compare(is_linear(a, b) ? M_CHAIN_LAMBDA : M_POSITION_LAMBDA, alone.position_lambda[b], s.lambda[b],
                     k * s.lambda_scale[b] + (s.lambda_scale[b] > 0 ? tail : 0));
@@ -296,8 +296,8 @@ molecule_verdict check_alone(const hostile_molecule &m, const molecule_reference
     facts.least_pivot = least_pivot;
     facts.condition = exact.metric.condition;
     const placement a = place({&m}, 0);
-    const bool graph = a.status == HOL_OK && has_graph(a), doubtful = is_straight_triangle(m);
-    facts.promised = facts.regular && !doubtful && (!graph || least_pivot > graph_limit) &&
+    const bool graph = a.status == HOL_OK && has_graph(a), flagged = is_straight_triangle(m);
+    facts.promised = facts.regular && !flagged && (!graph || least_pivot > graph_limit) &&
                      (m.shape != RINGS || least_pivot > ring_limit) &&
                      (m.shape != TREES || facts.condition < tree_limit);
     if (a.status != HOL_OK) {

@@ -27,13 +27,13 @@ std::int64_t grow(seam_graph &g, std::int64_t from, std::int64_t length)
     return static_cast<std::int64_t>(g.parent.size()) - 1;
 }
 
-/** Runs between branch atoms, at which `branches` of them begin. */
-void grow_runs(seam_graph &g, const std::vector<std::int64_t> &lengths, std::int64_t branches)
+/** Runs between branch atoms, at which `subtrees` of them begin. */
+void grow_runs(seam_graph &g, const std::vector<std::int64_t> &lengths, std::int64_t subtrees)
 {
     std::vector<std::int64_t> ends{0};
     std::size_t next = 0;
     for (std::size_t e = 0; next < lengths.size(); ++e)
-        for (std::int64_t b = 0; b < branches && next < lengths.size(); ++b)
+        for (std::int64_t b = 0; b < subtrees && next < lengths.size(); ++b)
             ends.push_back(grow(g, ends[e], lengths[next++]));
 }
 

@@ -148,7 +148,7 @@ int run(const soak_options &options, const std::string &directory, double percen
     work.repeat = "tests/stress/stress_molecules --group";
     const int lost = soak(options, sets, work);
     const std::vector<molecule_tally> of_set = tallies.of_all_sets();
-    print(class_name, sets, of_set);
+    print(class_name, N_CLASSES, sets, of_set);
     if (lost > 0) std::printf("stress: %d processes ended before their time\n", lost);
     bool within = lost == 0;
     for (const molecule_tally &t : of_set)

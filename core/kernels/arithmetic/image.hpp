@@ -7,10 +7,10 @@
 namespace holonomic::HOL_ISA {
 
 // Minimum image of bond vectors, of all lanes or of one; `lo` gets what d's rounding left off.
-template <bool careful, class V>
+template <bool extended, class V>
 HOL_INLINE void wrap(const Box &box, Vector3<V> &d, Vector3<V> &lo) {
     const double *h = box.h, *in = box.inverse;
-    if (!careful && box.shape == Box::orthorhombic) {
+    if (!extended && box.shape == Box::orthorhombic) {
         const double *const per_side = box.per_side, *const minus_side = box.minus_side;
         d.x = mul_add(round(d.x * per_side[0]), V{} + minus_side[0], d.x);
         d.y = mul_add(round(d.y * per_side[1]), V{} + minus_side[1], d.y);
@@ -25,7 +25,7 @@ HOL_INLINE void wrap(const Box &box, Vector3<V> &d, Vector3<V> &lo) {
         HOL_UNROLL
         for (int i = 0; i < 3; ++i) {
             const V side = V{} + h[3 * i + c];
-            if (careful) {
+            if (extended) {
                 const Pair<V> p = two_product<V>(n[i], side);
                 const Pair<V> s = two_difference<V>(*component[c], p.hi);
                 const Pair<V> t = fast_two_sum<V>(s.hi, s.lo - p.lo + *low[c]);

@@ -2,7 +2,8 @@
 // the precision: every limit, with the equation of docs/theory.md whose error it bounds. What is looked at stands where
 // it is computed; here are the numbers alone. docs/stability.md derives them.
 //
-// They share one promise: a multiplier is right to 16 + sqrt(n) roundings of its scale (tests/oracle/molecules/README.md).
+// They share one promise: a multiplier is right to 16 + sqrt(n) roundings of its scale
+// (tests/oracle/molecules/README.md).
 #pragma once
 
 #include "core/kernels/isa/lanes.hpp"
@@ -11,9 +12,9 @@ namespace holonomic::HOL_ISA {
 
 constexpr double epsilon = 2.220446049250313e-16;
 
-// Products of two bonds. g = d . d' of nearly orthogonal bonds cancels, which shows where the right-hand sides of the two
-// differ by orders of magnitude. Below this cosine g is computed anew from the coordinates: at a few in a hundred joints
-// of a coil.
+// Products of two bonds. g = d . d' of nearly orthogonal bonds cancels, which shows where the right-hand sides of the
+// two differ by orders of magnitude. Below this cosine g is computed anew from the coordinates: at a few in a hundred
+// joints of a coil.
 constexpr double small_cosine = 1.0 / 32;
 // In segments: the error bound of chains of more than longest_lane bonds is twice as large, which products that are
 // rounded before they are added use up. One lane has no segments but on request.
@@ -37,16 +38,16 @@ HOL_INLINE double most_cancelled2(int32_t n_bonds) {
     return large > most_cancelled * most_cancelled ? large : most_cancelled * most_cancelled;
 }
 // (53b), atoms with many bonds: the most that tr M tr N may be, which is 9 where M is a multiple of 1.
-constexpr double most_uneven = 128, even = 9;
+constexpr double most_uneven = 128, least_uneven = 9;
 
-// Rings (57b): how many roundings of the diagonal elements may be taken off, and what pivots must keep of these, so that
-// none is zero.
+// Rings (57b): how many roundings of the diagonal elements may be taken off, and what pivots must keep of these, so
+// that none is zero.
 HOL_INLINE double most_roundings(int32_t n_bonds) { return 0.8 * (16 + __builtin_sqrt(static_cast<double>(n_bonds))); }
 constexpr double least_lowered_part = 1.0 / 1024;
 
-// Triangles (56). Below this sine squared the cross product of rounded bonds loses more than a digit. Three distances on
-// a line can't be told from the next (eps^2 for the coordinates' roundings would be 5e-32). An element of the inverse
-// between two bonds is a difference of two terms, of which so much may cancel.
+// Triangles (56). Below this sine squared the cross product of rounded bonds loses more than a digit. Three distances
+// on a line can't be told from the next (eps^2 for the coordinates' roundings would be 5e-32). An element of the
+// inverse between two bonds is a difference of two terms, of which so much may cancel.
 constexpr double least_sine2 = 1.0 / 64;
 constexpr double straight_sine2 = 1e-22;
 constexpr double most_cancelled_there = 6;
@@ -64,8 +65,9 @@ constexpr double most_beyond = 30;
 // may be nothing but rounding; corrections don't show that if the right-hand side does not.
 constexpr double least_proven_pivot = 1e-6;
 constexpr double least_pivot = 1e-10;
-// A multiplier that is less of what meets at its bond's atoms is faint: residuals are right to some 2^-104 of that.
-constexpr double faint_part = 1.0 / (1LL << 54);
+// A multiplier that is less of what meets at its bond's atoms is cancelling: residuals are right to some 2^-104 of
+// that.
+constexpr double cancelling_part = 1.0 / (1LL << 54);
 
 // The metric (62): the part of what it is subtracted from that a pivot and E must keep. Its inverse is that many
 // roundings off H.

@@ -195,9 +195,10 @@ HOL_NOINLINE void prepare(const BodyKind &kind, const Frame<R> &__restrict from,
 }
 
 // change: becomes that to A. C acts along axes that have been made orthonormal; where that makes a difference of more
-// than `slack` the body is not done.
+// than `margin` the body is not done.
 template <int R>
-HOL_NOINLINE mask finish(const BodyKind &kind, const Turn<R> &__restrict t, double slack, Frame<R> &__restrict change) {
+HOL_NOINLINE mask finish(const BodyKind &kind, const Turn<R> &__restrict t, double margin,
+                         Frame<R> &__restrict change) {
     vec g[3];
     vec3 axis[3];
     HOL_UNROLL_FEW
@@ -227,7 +228,7 @@ HOL_NOINLINE mask finish(const BodyKind &kind, const Turn<R> &__restrict t, doub
         }
         put(change[1 + q], sum);
     }
-    return t.good & less_equal(t.off * largest, splat(slack * slack));
+    return t.good & less_equal(t.off * largest, splat(margin * margin));
 }
 
 // The same for a line: |A + t - c A|^2 = 1.

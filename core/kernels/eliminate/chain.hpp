@@ -39,7 +39,7 @@ struct Sweep {
     Column e = {splat(1.0), vec{}};  // E
     vec F1 = {}, rF = splat(1.0);    // P = F1 / F of the bond before; rF = 1 / F1
     vec rP = {}, y = {};
-    vec slack = {};  // negative where the cheap tests failed
+    vec margin = {};  // negative where the cheap tests failed
     // Sum of |u|, q, 1 / P and w. With kept pivots |u| is left out: the end of the second solve shows an overflow.
     vec size = {};
 
@@ -93,7 +93,7 @@ struct Sweep {
         if (any(little)) {
             const vec3 c = cross(d, d1);
             X = select(little, dot(c, c), X);
-            slack = min(slack, keep(little, spare(e, F1, spare_of_cross_products)));
+            margin = min(margin, keep(little, spare(e, F1, spare_of_cross_products)));
         }
         const mask orthogonal = nearly_orthogonal(g, X);
         if (any(orthogonal)) {
@@ -106,14 +106,13 @@ struct Sweep {
     // |d_k|, and |t_k| <= |u_k| + |l_{k+1} t_{k+1}|, |l_{k+1}| <= w |d_k| |d_{k+1}| / P_k. There no product of five
     // pivots, as A is, has lost digits by underflow either.
     mask calm() const { return less(size, splat(largest_calm)); }
-    // Lanes that need careful arithmetic.
-    mask doubt() const {
-        const mask failed = less(slack, vec{}), wild = ~calm();
+    // Lanes that need extended arithmetic.
+    mask flag() const {
+        const mask failed = less(margin, vec{}), wild = ~calm();
         if (__builtin_expect(!any(failed | wild), 1)) return none();
-        const mask doubtful =
-            doubtful_joints<uniform>(block, s.D, 1, block.n - 1, w_at<uniform>(block, 0) * dot(s.D[0], s.D[0])) &
-            failed;
-        return any(wild) ? doubtful | (extreme_pivots<uniform>(block, s.D) & wild) : doubtful;
+        const mask flagged =
+            flagged_joints<uniform>(block, s.D, 1, block.n - 1, w_at<uniform>(block, 0) * dot(s.D[0], s.D[0])) & failed;
+        return any(wild) ? flagged | (extreme_pivots<uniform>(block, s.D) & wild) : flagged;
     }
 };
 
@@ -140,7 +139,7 @@ HOL_NOINLINE mask forward(const Block &block, const Reader &in, const System &s,
                 k, [&]() HOL_FORCED { return s.t[k]; }, k % 4 == 0, k >= block.n_min);
     }
     calm = sweep.calm();
-    return ~sweep.doubt();
+    return ~sweep.flag();
 }
 
 // Products of two pivots don't underflow if their reciprocals are below this.
@@ -150,7 +149,7 @@ constexpr double largest_reciprocal = 1e140;
 // whose numbers don't overflow or underflow; if they do, u_0 becomes NaN. `overflow` looks at q as well: a last bond of
 // infinite q would pass for one without tension.
 template <bool uniform>
-HOL_NOINLINE void forward_careful(const Block &block, const System &s) {
+HOL_NOINLINE void forward_extended(const Block &block, const System &s) {
     const long n = block.n;
     vec size = {}, overflow = {};  // of reciprocals of pivots; NaN if any q or E is infinite
     vec q = dot(s.D[0], s.D[0]), E = w_at<uniform>(block, 0) * q, y = s.t[0];

@@ -15,7 +15,7 @@ HOL_INLINE Joint plain_joint(const vec3 &d, const vec3 &d1) {
     return {dot(d, d1), dot(c, c), dot(d1, d1)};
 }
 
-HOL_INLINE Joint careful_joint(const vec3 &d, const vec3 &low, const vec3 &d1, const vec3 &low1) {
+HOL_INLINE Joint extended_joint(const vec3 &d, const vec3 &low, const vec3 &d1, const vec3 &low1) {
     const vec3 c = cross_compensated(d, low, d1, low1);
     return {dot_compensated(d, low, d1, low1), dot(c, c), dot(d1, d1)};
 }

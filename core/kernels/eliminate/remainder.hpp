@@ -89,18 +89,18 @@ HOL_INLINE vec spare(const Column &e, vec F1, double times) { return mul_sub(spl
 // Exact form of the test, for the joints between the n + 1 bonds from D on. Joint i is at atom first + i; E is the
 // remainder before D[0].
 template <bool uniform>
-HOL_NOINLINE mask doubtful_joints(const Block &block, const vec3 *D, long first, long n, vec E) {
-    mask doubt = none();
+HOL_NOINLINE mask flagged_joints(const Block &block, const vec3 *D, long first, long n, vec E) {
+    mask flag = none();
     for (long i = 0; i < n; ++i) {
         const vec w = w_at<uniform>(block, first + i), q = dot(D[i], D[i]), q1 = dot(D[i + 1], D[i + 1]);
         const vec3 c = cross(D[i], D[i + 1]);
         const vec X = dot(c, c), qq = q * q1, S = mul_add(q1, E, w * X);
         const double eps2 = 4.9e-32;  // (2^-52)^2: an X that vanished by rounding
         const vec left = (w * w) * ((X + eps2 * qq) * qq), right = (joint_tolerance * joint_tolerance) * (S * S);
-        doubt = doubt | (~less_equal(left, right) & joint(block, first + i));
+        flag = flag | (~less_equal(left, right) & joint(block, first + i));
         E = w * S / mul_add(w, q, E);
     }
-    return doubt;
+    return flag;
 }
 
 // If |u|, q, 1 / P and w are below this, nothing overflows after the forward sweep, and no product of pivots in it has

@@ -25,10 +25,10 @@ namespace holonomic::HOL_ISA {
 struct Summary {
     vec E, y, a, c, f, T;  // y without the right-hand side of the separator behind
     vec q, b;              // of the separators: d.d and the right-hand side
-    vec span, reach;       // largest w times the last q, times the separator's: see is_doubtful_join()
+    vec span, reach;       // largest w times the last q, times the separator's: see is_flagged_join()
     vec w_max, q_max;
     vec t, up;  // at the separators: y^ / P^, then t; f / P^
-    mask doubt;
+    mask flag;
 };
 
 // What the elimination keeps of a bond for the substitution: u = y / P, the multiplier of the joint behind it, f / P.
@@ -74,7 +74,7 @@ struct Elimination {
     vec q;            // of the bond that is to be eliminated
     Column e, ac;     // E = A / F; a and c, in the same units of 1 / F
     vec rF, f, y, T;  // 1 / F; f is in its units, too
-    vec w_max, q_max, slack;
+    vec w_max, q_max, margin;
     vec largest_rF, least_rF;
 };
 
@@ -88,7 +88,7 @@ HOL_INLINE void start(Elimination &e, const Block &block, vec q0, const Joint &j
     e.ac = {(w * w) * j.X, w * q0};
     e.y = b1;
     e.f = w * j.g;
-    e.T = e.slack = e.largest_rF = vec{};
+    e.T = e.margin = e.largest_rF = vec{};
     e.least_rF = splat(1.0);
     e.w_max = w;
     e.q_max = max(q0, j.q);
@@ -119,13 +119,13 @@ struct Settled {
 };
 
 // Eliminates bond k; j is the joint behind it and b1 the right-hand side behind that. ragged: lanes may end there.
-template <bool uniform, bool careful>
+template <bool uniform, bool extended>
 HOL_INLINE void step(Elimination &e, const Block &block, const SegmentStore &x, long k, const Joint &j, vec b1,
                      bool ragged) {
     const vec w = w_at<uniform>(block, k + 1);
     const vec wq = w * e.q, F1 = e.e.next(wq), c1 = e.ac.next(wq);
     vec left = {};
-    if (!careful) left = spare(e.e, F1, spare_of_cross_products);
+    if (!extended) left = spare(e.e, F1, spare_of_cross_products);
     e.rF = splat(1.0) / F1;
     const vec rP = e.e.F * e.rF, fP = e.f * e.rF, wwX = (w * w) * j.X, wq1 = w * j.q;
     vec wg = w * j.g;
@@ -143,7 +143,7 @@ HOL_INLINE void step(Elimination &e, const Block &block, const SegmentStore &x, 
         e.ac.A = keep(live, e.ac.A);
         left = keep(live, left);
     }
-    if (!careful) e.slack = min(e.slack, left);
+    if (!extended) e.margin = min(e.margin, left);
     if (!uniform) e.w_max = max(e.w_max, ragged ? keep(live, w) : w);  // inert bonds have masses of their own
     e.q = j.q;
     e.q_max = max(e.q_max, ragged ? keep(live, j.q) : j.q);
@@ -152,31 +152,31 @@ HOL_INLINE void step(Elimination &e, const Block &block, const SegmentStore &x, 
 // Loads W segments, stage by stage, and eliminates their inner bonds: a group at a time where all have these bonds,
 // with one quick test for all of it, then one at a time. block.len counts the separators behind them; `in` reads the
 // segments alone.
-template <bool uniform, bool careful>
+template <bool uniform, bool extended>
 HOL_NOINLINE void eliminate(const SegmentBlock &s, const Reader &in, const SeparatorsBehind &behind,
                             const SegmentStore x) {  // by value: stores don't change it
     const Block &block = s.block;
     const Source source = {&in.box, in.r, nullptr, nullptr, nullptr, 0, block.len};
-    const long n = s.own_max, grouped = careful ? 0 : s.own_min / group * group;
-    vec3 D[stage_bonds + 2 + W], low[careful ? stage_bonds + 2 + W : 1];  // D[0]: the last one of the stage before
+    const long n = s.own_max, grouped = extended ? 0 : s.own_min / group * group;
+    vec3 D[stage_bonds + 2 + W], low[extended ? stage_bonds + 2 + W : 1];  // D[0]: the last one of the stage before
     vec B[stage_bonds + 1 + W];
     Elimination e = {};
     Settled settled;
-    mask doubt = none();
+    mask flag = none();
     vec E0 = {};
     // Joints that have failed the cheap test, of m joints of bonds from d on. E0: E before the first, that of bond k.
     const auto look = [&](const vec3 *d, long k, long m) HOL_FORCED {
-        const mask short_of = less(e.slack, vec{});
-        if (careful || __builtin_expect(!any(short_of), 1)) return;
-        doubt = doubt | (doubtful_joints<uniform>(block, d, k, m, E0) & short_of);
-        e.slack = vec{};
+        const mask short_of = less(e.margin, vec{});
+        if (extended || __builtin_expect(!any(short_of), 1)) return;
+        flag = flag | (flagged_joints<uniform>(block, d, k, m, E0) & short_of);
+        e.margin = vec{};
     };
     for (long k0 = 0; k0 < n; k0 += stage_bonds) {
         long end = k0 + stage_bonds < n ? k0 + stage_bonds : n, k = k0;
-        in.load(k0, end, D + 1, careful ? low + 1 : nullptr, B);
+        in.load(k0, end, D + 1, extended ? low + 1 : nullptr, B);
         if (end == n) {
             D[1 + n - k0] = behind.d;
-            if (careful) low[1 + n - k0] = behind.low;
+            if (extended) low[1 + n - k0] = behind.low;
             B[n - k0] = vec{};
             ++end;
         }
@@ -195,15 +195,15 @@ HOL_NOINLINE void eliminate(const SegmentBlock &s, const Reader &in, const Separ
                 look(d, k, group);
             }
             if (k == end) break;
-            const vec3 *const d = D + (k - k0), *const l = careful ? low + (k - k0) : nullptr;
+            const vec3 *const d = D + (k - k0), *const l = extended ? low + (k - k0) : nullptr;
             const vec *const b = B + (k - k0);
             const bool alone = k >= grouped;  // else of the first group
             Joint j;
             if (k == 0) {
                 x.summary->q = dot(d[1], d[1]);
                 x.summary->b = b[0];
-            } else if (careful) {
-                j = careful_joint(d[0], l[0], d[1], l[1]);
+            } else if (extended) {
+                j = extended_joint(d[0], l[0], d[1], l[1]);
             } else {
                 plain_joints<1>(source, k - 1, d, &j);
             }
@@ -213,7 +213,7 @@ HOL_NOINLINE void eliminate(const SegmentBlock &s, const Reader &in, const Separ
             } else if (k > 1) {
                 // The last joint is masked in the chain's last segment, others where that ends.
                 if (alone) E0 = e.e.A;
-                step<uniform, careful>(e, block, x, k - 1, j, b[0], true);
+                step<uniform, extended>(e, block, x, k - 1, j, b[0], true);
                 if (alone || k % 4 == 3) normalise(e);
                 if (alone)
                     look(d, k, 1);
@@ -224,7 +224,7 @@ HOL_NOINLINE void eliminate(const SegmentBlock &s, const Reader &in, const Separ
         }
         settled.look(e);
         D[0] = D[end - k0];
-        if (careful) low[0] = low[end - k0];
+        if (extended) low[0] = low[end - k0];
     }
     Summary &sum = *x.summary;
     sum.E = e.e.A;
@@ -237,8 +237,8 @@ HOL_NOINLINE void eliminate(const SegmentBlock &s, const Reader &in, const Separ
     sum.w_max = e.w_max;
     sum.q_max = e.q_max;
     sum.reach = uniform ? vec{} : e.w_max * sum.q;
-    sum.doubt = doubt | ~less(e.largest_rF, splat(careful ? largest_reciprocal_of_one : largest_reciprocal_of_four)) |
-                ~less(vec{}, e.least_rF);
+    sum.flag = flag | ~less(e.largest_rF, splat(extended ? largest_reciprocal_of_one : largest_reciprocal_of_four)) |
+               ~less(vec{}, e.least_rF);
 }
 
 // The rounding of the X of nearly parallel bonds reaches E' through a. With a = sum alpha_j X_j over n joints, its
@@ -252,7 +252,7 @@ HOL_NOINLINE void eliminate(const SegmentBlock &s, const Reader &in, const Separ
 // separator, say. Seen from the far end, c is a remainder E' as any other, and its error at most 2 eps sqrt(w_max q_s
 // c), q_s being the separator's. It is harmless where that is below join_tolerance sum, `sum` being what c is added to,
 // c itself included, or times `factor`. With equal masses c >= w q_s / n, which is enough.
-HOL_INLINE bool is_doubtful_join(const Summary &s, int i, double S, double sum, double factor) {
+HOL_INLINE bool is_flagged_join(const Summary &s, int i, double S, double sum, double factor) {
     constexpr double most = join_tolerance * join_tolerance;
     return !(4 * s.a[i] * s.span[i] * s.c[i] <= most * S * S) ||
            !(s.reach[i] * s.c[i] * (factor * factor) <= most * (sum * sum));
@@ -271,7 +271,7 @@ struct SegmentOutputs {
 // Loads block j and eliminates its inner bonds. `terms`: of the right-hand sides; `strain` is added to rates, or
 // nullptr.
 void eliminate_block(int terms, const Box &, const Cut &, const Lane &, int64_t j, const AtomArray &r,
-                     const AtomArray &v, const AtomArray &f, bool careful, double *store, const Arena &,
+                     const AtomArray &v, const AtomArray &f, bool extended, double *store, const Arena &,
                      const double *strain = nullptr);
 
 // Substitutes in block j and writes; `pulled` gets what its atoms are pulled with, times w_i if `weighted`.

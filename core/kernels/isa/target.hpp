@@ -22,12 +22,12 @@
 #define HOL_SMALL 0
 #endif
 
-// The careful solver of this set is in the namespace of another (careful/careful.hpp).
-#ifndef HOL_CAREFUL
-#define HOL_CAREFUL HOL_ISA
+// the extended-precision solver of this set is in the namespace of another (extended/verbs.hpp).
+#ifndef HOL_EXTENDED
+#define HOL_EXTENDED HOL_ISA
 #endif
 
-// So are its networks, where more registers bring them nothing (molecules/network/network.hpp).
+// So are its networks, where more registers bring them nothing (molecules/network/verbs.hpp).
 #ifndef HOL_NETWORKS
 #define HOL_NETWORKS HOL_ISA
 #endif

@@ -21,15 +21,15 @@ static void leave(const Block &block, mask which, unsigned char *left) {
 }
 
 // Lanes that plain products can't answer for get those of compensated ones.
-static mask keep_carefully(const Block &block, const Reader &in, const System &s, mask which, Arena arena) {
-    const System careful(block.n, arena);
-    in.load(0, block.n, careful.D, careful.D_low, careful.t);
-    block.uniform_w ? forward_careful<true>(block, careful) : forward_careful<false>(block, careful);
+static mask keep_extended(const Block &block, const Reader &in, const System &s, mask which, Arena arena) {
+    const System extended(block.n, arena);
+    in.load(0, block.n, extended.D, extended.D_low, extended.t);
+    block.uniform_w ? forward_extended<true>(block, extended) : forward_extended<false>(block, extended);
     for (long k = 0; k < block.n; ++k) {
-        s.pivots[k] = select(which, careful.pivots[k], s.pivots[k]);
-        if (k > 0) s.L[k] = select(which, careful.L[k], s.L[k]);
+        s.pivots[k] = select(which, extended.pivots[k], s.pivots[k]);
+        if (k > 0) s.L[k] = select(which, extended.L[k], s.L[k]);
     }
-    return which & finite(careful.t[0]);
+    return which & finite(extended.t[0]);
 }
 
 static void keep_block(const Block &block, const Lane *lane, const KeepCall &call, Arena arena, Tally &) {
@@ -43,7 +43,7 @@ static void keep_block(const Block &block, const Lane *lane, const KeepCall &cal
     s.L[0] = s.L[block.n] = vec{};
     good = good & calm;
     if (any(block.in_use() & ~good))
-        good = good | keep_carefully(block, Reader(block, call.box, none_, r, {}, {}, true), s, ~good & calm, arena);
+        good = good | keep_extended(block, Reader(block, call.box, none_, r, {}, {}, true), s, ~good & calm, arena);
     set_head(to, false, good & block.in_use());
     leave(block, ~good, call.left);
 }
@@ -69,7 +69,7 @@ static int64_t keep_small(const KeepCall &call, const Unit &unit, const Block &g
         for (int k = 0; k < N; ++k)
             sweep.step(
                 k, [&]() HOL_FORCED { return vec{}; }, k % 4 == 0, false);
-        if (__builtin_expect(any(sweep.doubt() | ~sweep.calm()), 0)) break;
+        if (__builtin_expect(any(sweep.flag() | ~sweep.calm()), 0)) break;
         s.L[0] = s.L[N] = vec{};
         set_head(to, true, first_lanes(static_cast<int>(n)));
     }

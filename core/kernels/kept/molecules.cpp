@@ -3,14 +3,14 @@
 #include "core/kernels/molecules/load.hpp"
 #include "core/kernels/molecules/solve.hpp"
 #include "core/kernels/molecules/store.hpp"
-#include "core/kernels/molecules/triangle/triangle_blocks.hpp"
+#include "core/kernels/molecules/triangle/blocks.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
 namespace holonomic::HOL_ISA {
 
 using namespace graph;
 
-bool is_kept(const Schedule &s) {
+bool is_kept(const EliminationPlan &s) {
     return s.way.given == Way::triangle || (!s.alone && (s.way.given == Way::tree || s.way.given == Way::ring));
 }
 
@@ -26,12 +26,12 @@ static inline V *factors_in(double *block) {
 
 struct KeepTrees {
     const KeepCall &call;
-    const Schedule &schedule;
+    const EliminationPlan &elimination;
 
     template <class V>
     void block(const MoleculeLane *lane, int used, bool, double *scratch) const {
         Memory<V> memory = {scratch};
-        Linear<V> z(schedule, lane, used, true, call.box, call.r, memory);
+        Linear<V> z(elimination, lane, used, true, call.box, call.r, memory);
         const int64_t n = z.n_factors();
         double *const to = call.kept->room(call.kept->owner, lane[0].molecule, most_lanes + n * Width<V>::lanes);
         if (!to) return leave(lane, (1u << used) - 1, call.left);
@@ -46,7 +46,7 @@ struct KeepTrees {
 
 struct SolveTrees {
     const KeptCall &call;
-    const Schedule &schedule;
+    const EliminationPlan &elimination;
     Tally &tally;
 
     template <class V>
@@ -55,17 +55,17 @@ struct SolveTrees {
         if (!from) return;
         Memory<V> memory = {scratch};
         const Box no_box = {};
-        Linear<V> z(schedule, lane, used, true, no_box, call.g, memory);
+        Linear<V> z(elimination, lane, used, true, no_box, call.g, memory);
         const V *const kept = factors_in<V>(const_cast<double *>(from));
         __builtin_memcpy(z.factors(), kept, static_cast<unsigned long>(z.n_factors()) * sizeof(V));
-        z.x.slack = Width<V>::all(1);
+        z.x.margin = Width<V>::all(1);
         const unsigned good = static_cast<unsigned>(from[0]) & solve_kept(z, call.v, call.f, call.rhs);
         leave(lane, bits(z.x.in_use()) & ~good, call.left);
         if (call.lambda) write_bonds<false>(z.x, 0.5, call.lambda, good);
         if (call.tension) write_bonds<true>(z.x, 1, call.tension, good);
         if (call.virial) add_pulls_to_virial(z.x, good, tally);
         if (call.g.x)
-            write_vectors(call.g, z.x.at, schedule.slot_of, schedule.n_atoms, Slots<V>(z.pulls()),
+            write_vectors(call.g, z.x.at, elimination.slot_of, elimination.n_atoms, Slots<V>(z.pulls()),
                           Written<V>{good, nullptr, z.x.lane, call.add});
     }
 };
@@ -87,7 +87,7 @@ struct KeptTriangle {
 struct KeepTriangles : OneWay {
     const KeepCall &call;
     explicit KeepTriangles(const KeepCall &c) : call(c) {}
-    void solve_carefully(const Schedule &, const MoleculeLane *lane, unsigned rest, double *) const {
+    void solve_extended(const EliminationPlan &, const MoleculeLane *lane, unsigned rest, double *) const {
         leave(lane, rest, call.left);
     }
     template <Inlined where, class V, class Lanes>
@@ -122,7 +122,7 @@ struct SolveTriangles : OneWay {
     const KeptCall &call;
     Tally &tally;
     SolveTriangles(const KeptCall &c, Tally &t) : call(c), tally(t) {}
-    void solve_carefully(const Schedule &, const MoleculeLane *lane, unsigned rest, double *) const {
+    void solve_extended(const EliminationPlan &, const MoleculeLane *lane, unsigned rest, double *) const {
         leave(lane, rest, call.left);
     }
     template <Inlined where, class V, class Lanes>
@@ -162,17 +162,18 @@ struct SolveTriangles : OneWay {
 };
 
 void keep_molecules(const KeepCall &call, const MoleculeUnit &unit, double *scratch, Tally &) {
-    if (unit.schedule->type == Schedule::triangle) return for_each_triangle(KeepTriangles(call), unit, true, scratch);
+    if (unit.elimination->way.given == Way::triangle)
+        return for_each_triangle(KeepTriangles(call), unit, true, scratch);
     NextMolecules ahead;
-    KeepTrees work = {call, *unit.schedule};
+    KeepTrees work = {call, *unit.elimination};
     for_each_block(unit, scratch, ahead, work);
 }
 
 void solve_kept_molecules(const KeptCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
-    if (unit.schedule->type == Schedule::triangle)
+    if (unit.elimination->way.given == Way::triangle)
         return for_each_triangle(SolveTriangles(call, tally), unit, true, scratch);
     NextMolecules ahead;
-    SolveTrees work = {call, *unit.schedule, tally};
+    SolveTrees work = {call, *unit.elimination, tally};
     for_each_block(unit, scratch, ahead, work);
 }
 

@@ -71,9 +71,9 @@ static void load_chunks(const Reader &in, long k0, long end, vec3 *D, vec *B) {
 }
 
 // Those that whole chunks of a block have, or nullptr: bond by bond.
-static Reader::LoadChunks *chunks_of(const Block &block, const Box &box, int terms, bool careful) {
+static Reader::LoadChunks *chunks_of(const Block &block, const Box &box, int terms, bool extended) {
     constexpr int forces = force_difference, both = velocity_squared | force_difference;
-    if (careful || box.shape == Box::triclinic) return nullptr;
+    if (extended || box.shape == Box::triclinic) return nullptr;
     const bool boxed = box.shape != Box::none;
     const bool uniform = (terms & force_difference) && block.uniform_w;  // else masses may not have been set
     switch (terms) {
@@ -95,18 +95,18 @@ static Reader::LoadChunks *chunks_of(const Block &block, const Box &box, int ter
 }
 
 // Differences of a vector per atom, of whole chunks, and what rounding leaves off them.
-template <bool careful, bool weigh = false>
+template <bool extended, bool weigh = false>
 static void subtract_chunks(const Packed &rows, long k0, long end, vec3 *out, vec3 *low,
                             const double *const *w3 = nullptr) {
     const RowsOfLanes at(rows);
-    if (!careful && !weigh) {
+    if (!extended && !weigh) {
         const long done = subtract_in_fours(at.first + 3 * k0, end - k0, out);
         k0 += done;
         out += done;
     }
     for (; k0 < end; k0 += W, out += W) {
-        subtract_chunk<careful, weigh>(at, k0, out, low, w3);
-        if (careful) low += W;
+        subtract_chunk<extended, weigh>(at, k0, out, low, w3);
+        if (extended) low += W;
     }
 }
 
@@ -270,7 +270,7 @@ void Reader::load_any(long from, long end, vec3 *D, vec3 *low, vec *B, vec3 *vel
 
 Reader::Reader(const Block &of, const Box &in, int wanted, const Packed &pr, const Packed &pv, const Packed &pf,
                bool with_low)
-    : block(of), box(in), terms(wanted), careful(with_low), ahead(of.ahead), r(&pr), v(&pv), f(&pf),
+    : block(of), box(in), terms(wanted), extended(with_low), ahead(of.ahead), r(&pr), v(&pv), f(&pf),
       load_chunks(chunks_of(of, in, wanted, with_low)) {}
 
 Reader::Reader(const Block &of, const Box &in, int wanted, const AtomLists &at, const AtomArray &ar,

@@ -24,7 +24,7 @@ struct RowsOfLanes {
 
 // Differences out[W] of a vector per atom, x_{k+1} - x_k from atom k0 on, and what rounding leaves off them: numbers
 // are subtracted as they stand in memory. weigh: vectors times the inverse masses w3, as Block has them.
-template <bool careful, bool weigh = false>
+template <bool extended, bool weigh = false>
 HOL_INLINE void subtract_chunk(const RowsOfLanes &at, long k0, vec3 *out, vec3 *low,
                                const double *const *w3 = nullptr) {
     HOL_UNROLL
@@ -38,13 +38,13 @@ HOL_INLINE void subtract_chunk(const RowsOfLanes &at, long k0, vec3 *out, vec3 *
                 const double *const w = w3[i] + 3 * k0 + W * j;
                 e[i] = load(w + 3) * load(x + 3) - load(w) * load(x);
             }
-            if (careful) l[i] = two_difference<vec>(load(x + 3), load(x)).lo;
+            if (extended) l[i] = two_difference<vec>(load(x + 3), load(x)).lo;
         }
         transpose(e);
-        if (careful) transpose(l);
+        if (extended) transpose(l);
         HOL_UNROLL
         for (int i = 0; i < W; ++i) (&out->x)[j * W + i] = e[i];
-        for (int i = 0; careful && i < W; ++i) (&low->x)[j * W + i] = l[i];
+        for (int i = 0; extended && i < W; ++i) (&low->x)[j * W + i] = l[i];
     }
 }
 
@@ -53,7 +53,7 @@ struct Reader {
     const Block &block;
     const Box &box;
     const int terms;
-    const bool careful = false;
+    const bool extended = false;
     long ahead;                                                                        // as block.ahead
     const double *strain = nullptr;                                                    // added to rates
     const Packed *r = nullptr, *v = nullptr, *f = nullptr;                             // rows,
@@ -62,9 +62,9 @@ struct Reader {
     typedef void LoadChunks(const Reader &, long k0, long end, vec3 *D, vec *B);
     LoadChunks *const load_chunks = nullptr;
 
-    // From rows. `terms`: of right-hand sides; w in the lane's unit. careful: the low words of differences, too.
+    // From rows. `terms`: of right-hand sides; w in the lane's unit. extended: the low words of differences, too.
     Reader(const Block &, const Box &, int terms, const Packed &r, const Packed &v, const Packed &f,
-           bool careful = false);
+           bool extended = false);
     // From lists of atoms in packed arrays, of lanes that are equally long, where there are forces, or for kept rates.
     Reader(const Block &, const Box &, int terms, const AtomLists &, const AtomArray &r, const AtomArray &v,
            const AtomArray &f);

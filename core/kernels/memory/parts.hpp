@@ -4,8 +4,10 @@
 // a molecule that is bad is left as it was, and comes once more as what it is.
 #pragma once
 
+#include <stddef.h>
+
 #include "core/kernels/memory/stage.hpp"
-#include "core/kernels/molecules/schedule.hpp"
+#include "core/kernels/molecules/elimination_plan.hpp"
 #include "core/kernels/tally.hpp"
 
 namespace holonomic::HOL_ISA {
@@ -21,14 +23,14 @@ struct PartArray {
 };
 
 HOL_INLINE int64_t atoms_of(const Unit &unit) { return unit.lanes[0].n_bonds + 1; }
-HOL_INLINE int64_t atoms_of(const MoleculeUnit &unit) { return unit.schedule->n_atoms; }
+HOL_INLINE int64_t atoms_of(const MoleculeUnit &unit) { return unit.elimination->n_atoms; }
 HOL_INLINE int64_t bonds_of(const Unit &unit) { return unit.lanes[0].n_bonds; }
-HOL_INLINE int64_t bonds_of(const MoleculeUnit &unit) { return unit.schedule->n_bonds; }
+HOL_INLINE int64_t bonds_of(const MoleculeUnit &unit) { return unit.elimination->n_bonds; }
 HOL_INLINE int64_t &number_of(Lane &lane) { return lane.chain; }
 HOL_INLINE int64_t &number_of(MoleculeLane &lane) { return lane.molecule; }
 HOL_INLINE bool comes_in_parts(const Unit &) { return true; }
 HOL_INLINE bool comes_in_parts(const MoleculeUnit &unit) {
-    return !unit.forests && !unit.schedule->network && !unit.lanes[0].shared;
+    return !unit.tree_batches && unit.elimination->way.forces != Way::network && !unit.lanes[0].shared;
 }
 
 // Calls work(call, unit, tally) for parts of a unit that has several molecules. Returns false, and has done nothing,
@@ -65,7 +67,7 @@ HOL_NOINLINE bool in_packed_parts(const Call &call, const AnyUnit &unit, const P
             if (arrays[a].read) {
                 if (array.packed)
                     __builtin_memcpy(rows, reinterpret_cast<const double *>(array.x) + 3 * all.first_atom,
-                                     static_cast<size_t>(3 * count) * sizeof(double));
+                                     static_cast<size_t>(count) * (3 * sizeof(double)));
                 else
                     stage(array, all, 0, count - 1, rows);
             }
@@ -91,7 +93,7 @@ HOL_NOINLINE bool in_packed_parts(const Call &call, const AnyUnit &unit, const P
             if (!array.x || !arrays[a].written) continue;
             if (array.packed)
                 __builtin_memcpy(reinterpret_cast<double *>(array.x) + 3 * all.first_atom, buffer[a],
-                                 static_cast<size_t>(3 * count) * sizeof(double));
+                                 static_cast<size_t>(count) * (3 * sizeof(double)));
             else
                 unstage(array, all, 0, count - 1, buffer[a], false);
         }

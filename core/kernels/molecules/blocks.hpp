@@ -3,19 +3,19 @@
 #pragma once
 
 #include "core/kernels/memory/prefetch.hpp"
-#include "core/kernels/molecules/armed_tree/armed_tree.hpp"
-#include "core/kernels/molecules/doubtful.hpp"
-#include "core/kernels/molecules/list/flat_verbs.hpp"
+#include "core/kernels/molecules/armed_tree/linear.hpp"
+#include "core/kernels/molecules/flagged.hpp"
 #include "core/kernels/molecules/solve.hpp"
+#include "core/kernels/molecules/sparse_ldl/outputs.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 
 HOL_INLINE MoleculeLane molecule_of(const MoleculeUnit &unit, int64_t i) {
     if (!unit.regular) return unit.lanes[i];
     MoleculeLane lane = unit.lanes[0];
-    lane.first_atom += i * unit.schedule->n_atoms;
-    if (lane.atoms) lane.atoms += i * unit.schedule->n_atoms;
-    lane.first_bond += i * unit.schedule->n_bonds;
+    lane.first_atom += i * unit.elimination->n_atoms;
+    if (lane.atoms) lane.atoms += i * unit.elimination->n_atoms;
+    lane.first_bond += i * unit.elimination->n_bonds;
     lane.molecule += i;
     return lane;
 }
@@ -38,8 +38,8 @@ struct KnownMasses {
 
 // To the next block of molecules that follow each other.
 HOL_INLINE void advance(const MoleculeUnit &unit, MoleculeLane *lane) {
-    const int64_t atoms = W * static_cast<int64_t>(unit.schedule->n_atoms),
-                  bonds = W * static_cast<int64_t>(unit.schedule->n_bonds);
+    const int64_t atoms = W * static_cast<int64_t>(unit.elimination->n_atoms),
+                  bonds = W * static_cast<int64_t>(unit.elimination->n_bonds);
     for (int i = 0; i < W; ++i) {
         lane[i].first_atom += atoms;
         if (lane[i].atoms) lane[i].atoms += atoms;
@@ -55,7 +55,7 @@ static inline void for_each_block(const MoleculeUnit &unit, double *scratch, Nex
     KnownMasses<vec> known;
     KnownMasses<double> known_one;
     bool full = false;  // the block before was, and lanes follow each other
-    const bool small = !unit.schedule->alone;
+    const bool small = !unit.elimination->alone;
     int64_t first = 0;
     while (first < unit.count) {
         const int64_t left = unit.count - first;
@@ -65,7 +65,7 @@ static inline void for_each_block(const MoleculeUnit &unit, double *scratch, Nex
         else
             for (int i = 0; i < W; ++i) lane[i] = molecule_of(unit, first + (i < used ? i : 0));
         if (small && unit.large && left > W) {
-            ahead.begin(unit.schedule->n_atoms);
+            ahead.begin(unit.elimination->n_atoms);
             for (int64_t i = W; i < left && i < 2 * W; ++i) ahead.add(molecule_of(unit, first + i));
         }
         ahead.fetch();
@@ -84,7 +84,7 @@ static inline void for_each_block(const MoleculeUnit &unit, double *scratch, Nex
 template <class Call>
 struct LinearWork {
     const Call &call;
-    const Schedule &schedule;
+    const EliminationPlan &elimination;
     const Way way;
     const bool packed;
     Tally &tally;
@@ -93,24 +93,25 @@ struct LinearWork {
 
     template <class V>
     void block(const MoleculeLane *lane, int used, bool masses_known, double *scratch) const {
-        if (way == Way::list) return block_along_list<V>(lane, used, masses_known, scratch);
+        if (way == Way::sparse_ldl) return block_by_ldl<V>(lane, used, masses_known, scratch);
         if (way == Way::armed_tree) {
-            if (solve_armed(call, schedule, *lane, packed, team, scratch, tally)) return;
-            if (schedule.flat) return block_along_list<V>(lane, used, false, scratch);
+            if (solve_armed(call, elimination, *lane, packed, team, scratch, tally)) return;
+            if (elimination.ldl) return block_by_ldl<V>(lane, used, false, scratch);
         }
         Memory<V> memory = {scratch};
-        Linear<V> z(schedule, lane, used, packed, call.box, call.r, memory);
+        Linear<V> z(elimination, lane, used, packed, call.box, call.r, memory);
         const unsigned rest = solve_block(call, z, masses_known, ahead, tally);
-        if (__builtin_expect(rest != 0, 0)) solve_doubtful(call, schedule, z.x.lane, rest, memory.next, tally);
+        if (__builtin_expect(rest != 0, 0)) solve_flagged(call, elimination, z.x.lane, rest, memory.next, tally);
     }
 
 private:
     template <class V>
-    __attribute__((noinline)) void block_along_list(const MoleculeLane *lane, int used, bool masses_known, double *scratch) const {
+    __attribute__((noinline)) void block_by_ldl(const MoleculeLane *lane, int used, bool masses_known,
+                                                double *scratch) const {
         Memory<V> memory = {scratch};
-        const FlatBlock<V> block = {schedule, lane, used, packed, masses_known, team, memory};
-        if (const unsigned rest = solve_flat(call, block, tally))
-            solve_doubtful(call, schedule, lane, rest, memory.next, tally);
+        const LdlBlock<V> block = {elimination, lane, used, packed, masses_known, team, memory};
+        if (const unsigned rest = solve_by_ldl(call, block, tally))
+            solve_flagged(call, elimination, lane, rest, memory.next, tally);
     }
 };
 

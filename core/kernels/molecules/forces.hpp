@@ -2,11 +2,11 @@
 #pragma once
 
 #include "core/kernels/molecules/blocks.hpp"
-#include "core/kernels/molecules/doubtful.hpp"
-#include "core/kernels/molecules/list/flat_verbs.hpp"
+#include "core/kernels/molecules/flagged.hpp"
 #include "core/kernels/molecules/solve.hpp"
+#include "core/kernels/molecules/sparse_ldl/outputs.hpp"
 #include "core/kernels/molecules/store.hpp"
-#include "core/kernels/molecules/triangle/triangle_blocks.hpp"
+#include "core/kernels/molecules/triangle/blocks.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 

@@ -7,9 +7,9 @@
 namespace holonomic::HOL_ISA::graph {
 
 // Minimum image of a bond vector; `lo` gets what the rounding of d leaves off.
-template <bool careful, class V>
+template <bool extended, class V>
 HOL_INLINE void take_image(const Box &box, Vector3<V> &d, Vector3<V> &lo) {
-    if (box.shape != Box::none) wrap<careful>(box, d, lo);
+    if (box.shape != Box::none) wrap<extended>(box, d, lo);
 }
 
 template <int n, class V>

@@ -68,8 +68,8 @@ HOL_INLINE auto solve_and_move(System &newton, Mask active) {
 }
 
 // New factors square the error. Where they leave much more, bonds are so nearly straight that they can bend either way,
-// and the way that Newton's method takes decides. Such a molecule is left to the careful solver, which takes the
-// straight one, with new factors at each solve. `before`: the error from which a solve with new factors came.
+// and the way that Newton's method takes decides. Such a molecule is left to the extended-precision solver, which takes
+// the straight one, with new factors at each solve. `before`: the error from which a solve with new factors came.
 template <class V>
 HOL_INLINE MaskOf<V> lost_its_way(V error, V before) {
     const V part = max(Width<V>::all(0.01), 1e3 * before);

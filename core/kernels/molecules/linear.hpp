@@ -1,7 +1,7 @@
 // Solves the linear equations of a block of trees, or of rings with trees.
 #pragma once
 
-#include "core/kernels/molecules/ring/ring.hpp"
+#include "core/kernels/molecules/ring/linear.hpp"
 #include "core/kernels/molecules/store.hpp"
 
 namespace holonomic::HOL_ISA::graph {
@@ -16,26 +16,26 @@ struct Linear {
     static constexpr int64_t bond_values = sizeof(BondRow<V>) / sizeof(V);
 
     // Rows beside those of bonds: of a tree the root's, see load.hpp.
-    static int64_t more_rows(const Schedule &s) { return s.type == Schedule::tree ? 1 : 0; }
+    static int64_t more_rows(const EliminationPlan &s) { return s.type == EliminationPlan::tree ? 1 : 0; }
 
     // Values of V that the arrays take.
-    static int64_t values(const Schedule &s) {
+    static int64_t values(const EliminationPlan &s) {
         int64_t n = s.n_atoms + bond_values * s.n_bonds + s.n_pairs + JointMemory<V, 0>::values(s.max_joint);
-        if (s.type == Schedule::ring) n += Ring<V>::values(s);
+        if (s.type == EliminationPlan::ring) n += Ring<V>::values(s);
         n += bond_values * more_rows(s);
         n += 3 * 3 * static_cast<int64_t>(s.n_atoms);
         return n;
     }
 
-    Linear(const Schedule &s, const MoleculeLane *lane, int used, bool packed, const Box &box, const AtomArray &at,
-           Memory<V> &memory)
+    Linear(const EliminationPlan &s, const MoleculeLane *lane, int used, bool packed, const Box &box,
+           const AtomArray &at, Memory<V> &memory)
         : x{s, lane, used, Atoms<V>(lane, used, packed), &box, &at, nullptr, nullptr, nullptr, Width<V>::all(1), {}},
           ring() {
         x.per_cancelled2 = 1 / most_cancelled2(s.n_bonds);
         x.row = reinterpret_cast<BondRow<V> *>(memory.values(bond_values * (s.n_bonds + more_rows(s))));
         x.w = memory.values(s.n_atoms);
         x.pair = memory.values(s.n_pairs);
-        if (s.type == Schedule::ring)
+        if (s.type == EliminationPlan::ring)
             ring = {memory.values(s.n_core), memory.values(2 * static_cast<int64_t>(s.n_tree))};
         r = memory.vectors(s.n_atoms);
         v = memory.vectors(s.n_atoms);
@@ -47,7 +47,7 @@ struct Linear {
     // From right-hand sides to the solution, both in t of the rows.
     void factorize_and_solve() {
         up_trees(x, working);
-        if (x.s.type == Schedule::ring)
+        if (x.s.type == EliminationPlan::ring)
             choose([&](auto bare) HOL_FORCED { up_and_down_ring<bare>(); }, x.s.n_tree == 0);
         down_and_pull<true>();
     }
@@ -90,7 +90,7 @@ private:
         const Molecules<V> &y = x;
         for (int32_t p = 0; p < x.s.n_core; ++p) side(x.s.n_tree + p, x.s.from[p], x.s.to[p]);
         substitute_trees<look>(x, working, [&](int32_t slot) HOL_FORCED { side(slot, y.s.parent[slot], slot); });
-        if (x.s.type == Schedule::ring)
+        if (x.s.type == EliminationPlan::ring)
             choose(
                 [&](auto bare) HOL_FORCED {
                     substitute_ring<bare>(x, ring);

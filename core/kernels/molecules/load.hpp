@@ -68,7 +68,7 @@ struct Loader {
 
     template <bool has_v, bool has_f>
     __attribute__((noinline)) void make_rows_in_place() const {
-        const Schedule &s = z.x.s;
+        const EliminationPlan &s = z.x.s;
         const V *const mass = z.x.w;
         const Vector3<V> *const f = z.r;
         for (int32_t slot = 0; slot < s.n_tree; ++slot) {
@@ -92,8 +92,8 @@ struct Loader {
     }
 
     __attribute__((noinline)) void load() const {
-        const Schedule &s = z.x.s;
-        if (!has(rates | given) && s.type == Schedule::tree) {
+        const EliminationPlan &s = z.x.s;
+        if (!has(rates | given) && s.type == EliminationPlan::tree) {
             read_atoms_to_rows();
             return choose([&](auto v, auto f) { make_rows_in_place<v, f>(); }, has(squares), has(pulls));
         }
@@ -107,7 +107,7 @@ struct Loader {
 
     template <int sides>
     __attribute__((noinline)) void make_rows() const {
-        const Schedule &s = z.x.s;
+        const EliminationPlan &s = z.x.s;
         for (int32_t slot = 0; slot < s.n_tree; ++slot) {
             make_row(sides, slot, s.parent[slot], slot);
             BondRow<V> &row = z.x.row[slot];

@@ -3,13 +3,13 @@
 
 #include "core/kernels/arithmetic/thresholds.hpp"
 #include "core/kernels/arithmetic/vector3.hpp"
-#include "core/kernels/molecules/atoms/atoms.hpp"
+#include "core/kernels/molecules/atoms/layout.hpp"
+#include "core/kernels/molecules/elimination_plan.hpp"
 #include "core/kernels/molecules/image.hpp"
-#include "core/kernels/molecules/schedule.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 
-// A bond at its place (schedule.hpp).
+// A bond at its place (elimination_plan.hpp).
 template <class V>
 struct BondRow {
     Vector3<V> d;
@@ -30,7 +30,7 @@ struct Inputs {
 
 template <class V>
 struct Molecules {
-    const Schedule &s;
+    const EliminationPlan &s;
     const MoleculeLane *lane;  // of all lanes; those without a molecule repeat the first one
     int used;                  // lanes with a molecule
     Atoms<V> at;
@@ -39,7 +39,7 @@ struct Molecules {
     V *w;                // [n_atoms] by slot
     BondRow<V> *row;     // [n_bonds] by place
     V *pair;             // [n_pairs] multipliers among the children of an atom
-    V slack;             // negative where plain products do not do
+    V margin;            // negative where plain products do not do
     Inputs in;
     double per_cancelled2 = 1 / (most_cancelled * most_cancelled);  // 1 / most_cancelled2()
 
@@ -68,7 +68,7 @@ HOL_INLINE void put(Vector3<V> &to, const Vector3<V> &a) {
 
 // Inverse masses by slot.
 template <class V>
-HOL_INLINE void masses_by_slot(const Schedule &s, const MoleculeLane *lane, V *w) {
+HOL_INLINE void masses_by_slot(const EliminationPlan &s, const MoleculeLane *lane, V *w) {
     for (int32_t slot = 0; slot < s.n_atoms; ++slot)
         for (int i = 0; i < Width<V>::lanes; ++i) Width<V>::set(w[slot], i, lane[i].w[s.atom_of[slot]]);
 }
@@ -83,7 +83,7 @@ HOL_INLINE void read_row(const AtomArray &array, int64_t number, double *x) {
 }
 
 // Finds the slots at the two ends of a bond. It points from the first to the second.
-HOL_INLINE void ends_of(const Schedule &s, int32_t place, int32_t &from, int32_t &to) {
+HOL_INLINE void ends_of(const EliminationPlan &s, int32_t place, int32_t &from, int32_t &to) {
     from = place < s.n_tree ? s.parent[place] : s.from[place - s.n_tree];
     to = place < s.n_tree ? place : s.to[place - s.n_tree];
 }

@@ -2,13 +2,13 @@
 #pragma once
 
 #include "core/kernels/molecules/blocks.hpp"
-#include "core/kernels/molecules/doubtful.hpp"
+#include "core/kernels/molecules/flagged.hpp"
 #include "core/kernels/molecules/iterate.hpp"
-#include "core/kernels/molecules/list/flat_positions.hpp"
-#include "core/kernels/molecules/ring/ring_newton.hpp"
+#include "core/kernels/molecules/ring/newton.hpp"
+#include "core/kernels/molecules/sparse_ldl/positions.hpp"
 #include "core/kernels/molecules/store.hpp"
 #include "core/kernels/molecules/tree/newton.hpp"
-#include "core/kernels/molecules/triangle/triangle_blocks.hpp"
+#include "core/kernels/molecules/triangle/blocks.hpp"
 #include "core/kernels/tally.hpp"
 
 namespace holonomic::HOL_ISA::graph {
@@ -29,8 +29,8 @@ HOL_INLINE V largest_of(const V &largest, const Vector3<V> &r) {
 
 // Reads the reference positions and the new ones, by slot.
 template <class V>
-HOL_INLINE void read_positions(const Schedule &s, const PositionsCall &call, const Atoms<V> &at, const Slots<V> ref,
-                               const Slots<V> now) {
+HOL_INLINE void read_positions(const EliminationPlan &s, const PositionsCall &call, const Atoms<V> &at,
+                               const Slots<V> ref, const Slots<V> now) {
     read_vectors(call.r_ref, at, s.slot_of, s.n_atoms, ref);
     read_vectors(call.r, at, s.slot_of, s.n_atoms, now);
 }
@@ -38,7 +38,7 @@ HOL_INLINE void read_positions(const Schedule &s, const PositionsCall &call, con
 // Bonds of the reference positions and of the new ones; returns the largest coordinate of the latter.
 template <class V>
 HOL_NOINLINE V load_bonds(Newton<V> &newton, const PositionsCall &call, const Atoms<V> &at) {
-    const Schedule &s = newton.x.s;
+    const EliminationPlan &s = newton.x.s;
     const Vector3<V> *const r_ref = newton.x.r_ref, *const r = newton.x.r;
     read_positions(s, call, at, Slots<V>(newton.x.r_ref), Slots<V>(newton.x.r));
     V largest = {};
@@ -75,7 +75,7 @@ HOL_NOINLINE V load_bonds(RingNewton<V> &newton, const PositionsCall &call, cons
 // Moves the atoms of the lanes in `which`, and their velocities, but fixed ones.
 template <class System, class V>
 HOL_INLINE void write_moves(const System &newton, const PositionsCall &call, const Atoms<V> &at, unsigned which) {
-    const Schedule &s = newton.x.s;
+    const EliminationPlan &s = newton.x.s;
     unsigned char any_fixed = 0;
     for (int32_t i = 0; i < s.n_atoms; ++i) any_fixed |= s.fixed[i];
     const unsigned char *const fixed = any_fixed ? s.fixed : nullptr;
@@ -87,7 +87,7 @@ template <class System>
 struct PositionsBlock {
     typedef typename System::Value V;
     const PositionsCall &call;
-    const Schedule &s;
+    const EliminationPlan &s;
     const MoleculeLane *lane;  // [lanes]
     const Atoms<V> &at;
     System &newton;
@@ -160,7 +160,7 @@ struct PositionsBlock {
         return iterate<V, false, System::by_length>(newton, limits, call, in_use);
     }
 
-    // Returns the lanes that need careful arithmetic; nothing of them has been written.
+    // Returns the lanes that need extended arithmetic; nothing of them has been written.
     unsigned solve(MaskOf<V> in_use, NextMolecules &ahead) {
         const Solved<V> out = find(in_use);
         ahead.fetch();
@@ -177,7 +177,7 @@ struct PositionsBlock {
 
 struct PositionsWork {
     const PositionsCall &call;
-    const Schedule &schedule;
+    const EliminationPlan &elimination;
     const bool packed;
     Tally &tally;
     const LongTeam *team;
@@ -185,18 +185,21 @@ struct PositionsWork {
 
     template <class V>
     void block(const MoleculeLane *lane, int used, bool known, double *scratch) const {
-        switch (schedule.way.positions) {
-        case Way::list: return along_list<V>(lane, used, known, scratch);
-        case Way::ring: return solve<RingNewton<V>>(lane, used, known, scratch);
-        default: return solve<Newton<V>>(lane, used, known, scratch);
+        switch (elimination.way.positions) {
+            case Way::sparse_ldl:
+                return by_ldl<V>(lane, used, known, scratch);
+            case Way::ring:
+                return solve<RingNewton<V>>(lane, used, known, scratch);
+            default:
+                return solve<Newton<V>>(lane, used, known, scratch);
         }
     }
 
     template <class V>
-    void along_list(const MoleculeLane *lane, int used, bool known, double *scratch) const {
+    void by_ldl(const MoleculeLane *lane, int used, bool known, double *scratch) const {
         Memory<V> memory = {scratch};
-        FlatPositions<V> list(call, schedule, lane, used, packed, known, team, memory, tally);
-        if (const unsigned rest = list.solve()) solve_doubtful(call, schedule, lane, rest, memory.next, tally);
+        LdlPositions<V> list(call, elimination, lane, used, packed, known, team, memory, tally);
+        if (const unsigned rest = list.solve()) solve_flagged(call, elimination, lane, rest, memory.next, tally);
     }
 
     template <class System>
@@ -204,12 +207,12 @@ struct PositionsWork {
         typedef typename System::Value V;
         Memory<V> memory = {scratch};
         const Atoms<V> at(lane, used, packed);
-        System newton(schedule, memory);
+        System newton(elimination, memory);
         if (!known) newton.set_masses(lane);
-        PositionsBlock<System> block = {call, schedule, lane, at, newton, tally, V{}, V{}, V{}};
+        PositionsBlock<System> block = {call, elimination, lane, at, newton, tally, V{}, V{}, V{}};
         block.set_lengths(known);
         const unsigned rest = block.solve(Width<V>::first(used), ahead);
-        if (__builtin_expect(rest != 0, 0)) solve_doubtful(call, schedule, lane, rest, memory.next, tally);
+        if (__builtin_expect(rest != 0, 0)) solve_flagged(call, elimination, lane, rest, memory.next, tally);
     }
 };
 

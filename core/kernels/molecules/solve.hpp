@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/kernels/molecules/linear.hpp"
-#include "core/kernels/molecules/list/flat_linear.hpp"
+#include "core/kernels/molecules/sparse_ldl/linear.hpp"
 #include "core/kernels/molecules/store.hpp"
 
 namespace holonomic::HOL_ISA::graph {
@@ -22,8 +22,8 @@ void solve_for_rates(Linear<double> &);
 unsigned solve_kept(Linear<vec> &, const AtomArray &v, const AtomArray &f, const double *rhs);
 unsigned solve_kept(Linear<double> &, const AtomArray &v, const AtomArray &f, const double *rhs);
 
-// Reads the molecules and solves along their list. Returns the lanes that this answers for.
-unsigned solve_and_refine(const FlatLinear<vec> &);
-unsigned solve_and_refine(const FlatLinear<double> &);
+// Reads the molecules and solves by sparse LDL^T. Returns the lanes that this answers for.
+unsigned solve_and_refine(const LdlLinear<vec> &);
+unsigned solve_and_refine(const LdlLinear<double> &);
 
 }  // namespace holonomic::HOL_ISA::graph

@@ -9,7 +9,7 @@ namespace holonomic::HOL_ISA::graph {
 
 // Returns G of the atom of a tree at a slot: t d of the bonds to its children, less t d of that to its parent.
 HOL_INLINE Vector3<double> pull_on(const Molecules<double> &x, int32_t slot) {
-    const Schedule &s = x.s;
+    const EliminationPlan &s = x.s;
 #if HOL_LANES >= 4 && defined(__AVX2__)
     quad g = {};  // rows begin with d, so x, y and z are done at once
     for (int32_t c = s.child_start[slot]; c < s.child_start[slot + 1]; ++c) {
@@ -59,8 +59,8 @@ HOL_INLINE void write_slots(const Molecules<double> &x, const AtomArray &array, 
 // Puts G of the root's or the ring's atoms to pull[slot]; to that of their children what the bond above pulls.
 template <class V>
 HOL_INLINE void pull_top(const Molecules<V> &x, Vector3<V> *pull) {
-    const Schedule &s = x.s;
-    if (s.type == Schedule::ring) {
+    const EliminationPlan &s = x.s;
+    if (s.type == EliminationPlan::ring) {
         const auto of_bond = [&](int32_t place) HOL_FORCED { return x.row[place].t * x.row[place].d; };
         Vector3<V> before = of_bond(s.n_bonds - 1);
         for (int32_t slot = s.n_tree; slot < s.n_atoms; ++slot) {

@@ -4,7 +4,7 @@
 
 #include "core/kernels/molecules/blocks.hpp"
 #include "core/kernels/molecules/store.hpp"
-#include "core/kernels/molecules/triangle/triangle_blocks.hpp"
+#include "core/kernels/molecules/triangle/blocks.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 

@@ -1,5 +1,5 @@
-// The ways that a molecule that is no chain may take, and their limits. core/molecules/way.cpp decides, once per shape;
-// all others switch over what it has said.
+// The ways that a molecule that is no chain may take, and their limits. core/molecules/planned/way.cpp decides, once
+// per shape; all others switch over what it has said.
 #pragma once
 
 #include <stdint.h>
@@ -11,25 +11,25 @@ enum class Way : int32_t {
     star,        // star/: three or four bonds at one atom, in closed form
     ring,        // ring/: a ring without side atoms, along the ring
     tree,        // tree/: W molecules in lanes, leaves first; ring/ for the ring of a ring with trees
-    list,        // list/: all bonds along one list; W molecules in lanes, or a large one by itself
-    one_tree,    // forest/: one large tree, W of its atoms at a time
-    armed_tree,  // armed_tree/: one large tree of long linear parts, these as chains; where that fails, the list
-    paths,       // paths/: one large molecule of long linear parts, joined at knots; where that fails, the list
+    sparse_ldl,  // sparse_ldl/: L D L^T of all bonds; W molecules in lanes, or a large one by itself
+    large_tree,  // tree_batch/: one large tree, W of its atoms at a time
+    armed_tree,  // armed_tree/: one large tree of long linear parts, these as chains; else sparse LDL^T
+    paths,       // paths/: one large molecule of long linear parts, joined at junctions; else sparse LDL^T
     network,     // network/: one large molecule of strands that meet at nodes
-    careful,     // careful/: in twice the precision, one by one
+    extended,    // extended/: in twice the precision, one by one
 };
 
 // By what is asked. Velocities take the way of forces.
 struct Ways {
     Way forces, given, positions, metric;  // given: for right-hand sides of the caller's
 };
-// Positions of what is in a forest for its forces: the largest trees have another way.
-static inline bool moves_in_forest(Way positions) { return positions == Way::tree || positions == Way::one_tree; }
+// Positions of what is in a batch of trees for its forces: the largest trees have another way.
+static inline bool moves_in_batch(Way positions) { return positions == Way::tree || positions == Way::large_tree; }
 
 // Molecules of more bonds are worked on one by one, trees in pieces.
 constexpr int32_t largest_in_lanes = 2048;
-// Those with cycles gain nothing by lanes from fewer on: a list (flat_list.hpp) serves one of them as fast as lanes
-// serve each of four, and most are the only one of their kind.
+// Those with cycles gain nothing by lanes from fewer on: sparse LDL^T serves one of them as fast as lanes serve each of
+// four, and most are the only one of their kind.
 constexpr int32_t largest_graph_in_lanes = 256;
 // The most children of an atom of a ring with trees: chemical ones have no more. With others it is a graph.
 constexpr int32_t most_on_ring = 2;

@@ -1,7 +1,7 @@
 #include "core/kernels/newton/attempts.hpp"
 
 #include "core/kernels/arithmetic/image.hpp"
-#include "core/kernels/careful/chain.hpp"
+#include "core/kernels/extended/chain.hpp"
 #include "core/kernels/isa/choose.hpp"
 #include "core/kernels/memory/load.hpp"
 
@@ -148,11 +148,11 @@ constexpr double turning_part = 0x1p14;
 // Does the lanes in which multipliers depend on the last digits of the reference's bonds: such pulls, of atoms some
 // 1e5 times lighter than their neighbours, turn with them. There the bonds must not be rounded. Returns the lanes
 // that are done; the others are settled.
-mask Positions::solve_carefully(mask coarse, Carried &carried) {
+mask Positions::solve_extended(mask coarse, Carried &carried) {
     mask done = {};
     const unsigned chosen = bits(coarse_moves(block, x, carried, coarse, turning_part));
     for (int i = 0; i < block.lanes; ++i)
-        if (chosen >> i & 1 && careful::chain_positions(call, lane[i], const_cast<double *>(arena.end), tally))
+        if (chosen >> i & 1 && extended::chain_positions(call, lane[i], const_cast<double *>(arena.end), tally))
             done[i] = -1;
     return done;
 }
@@ -162,9 +162,9 @@ mask Positions::solve_carefully(mask coarse, Carried &carried) {
 void Positions::finish(Outcome &out, Carried &carried, bool moved) {
     mask coarse = moved ? out.converged : coarse_moves(block, x, carried, out.converged);
     if (__builtin_expect(any(coarse), 0)) {
-        careful_lanes = careful_lanes | solve_carefully(coarse, carried);
-        out.converged = out.converged & ~careful_lanes;
-        coarse = coarse & ~careful_lanes;
+        extended_lanes = extended_lanes | solve_extended(coarse, carried);
+        out.converged = out.converged & ~extended_lanes;
+        coarse = coarse & ~extended_lanes;
     }
     const bool settled = __builtin_expect(any(coarse), 0);
     note_worst(block, x, call, (out.converged | out.untouched) & ~coarse, out.error, tally);
@@ -196,13 +196,13 @@ void Positions::solve() {
     Carried carried(block, x, call, source);
     Outcome out = solve_positions(block, x, call, carried, all, call.guess);
     finish(out, carried, false);
-    mask rest = all & ~(out.converged | out.untouched | careful_lanes);
+    mask rest = all & ~(out.converged | out.untouched | extended_lanes);
     if (__builtin_expect(!any(rest), 1)) return;
     // Once more from the start, with new factors at every step and nothing that can overflow on the way.
     load();
     out = solve_positions(block, x, call, carried, rest, false, true);
     finish(out, carried, true);
-    rest = rest & ~(out.converged | out.untouched | careful_lanes);
+    rest = rest & ~(out.converged | out.untouched | extended_lanes);
     if (any(rest)) note_bad(block, rest, tally);
 }
 

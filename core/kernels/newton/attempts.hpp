@@ -61,9 +61,9 @@ struct Positions {
     void solve();
 
 private:
-    mask careful_lanes = {};  // done by the careful solver
+    mask extended_lanes = {};  // done by the extended-precision solver
     mask settle(mask coarse, Carried &, Outcome &);
-    mask solve_carefully(mask coarse, Carried &);
+    mask solve_extended(mask coarse, Carried &);
     void finish(Outcome &, Carried &, bool moved);
 };
 

@@ -10,7 +10,7 @@ namespace holonomic::HOL_ISA {
 // Newton's method on the lanes in `wanted`, from tau = 0 or the caller's guess in tau.
 template <Same masses, Same a, int fixed = 0>
 HOL_INLINE Outcome iterate(const Block &block, Newton &x, const PositionsCall &call, Carried &carried, mask wanted,
-                           bool guess, bool careful) {
+                           bool guess, bool extended) {
     Outcome out = {};
     const vec done = splat(wanted_error(call));
     // Functions that are not known here get a copy: x itself stays in registers.
@@ -19,9 +19,9 @@ HOL_INLINE Outcome iterate(const Block &block, Newton &x, const PositionsCall &c
         if (fixed > 0 && factors == renewed_factors) return renew<masses, a, fixed>(block, copy, which);
         return renew(block, copy, factors, which);
     };
-    x.step = careful ? x.correction : x.tau;
-    vec error =
-        careful ? renew_factors(careful_factors, wanted) : eliminate<masses, a, first_factors, fixed>(block, x, wanted);
+    x.step = extended ? x.correction : x.tau;
+    vec error = extended ? renew_factors(extended_factors, wanted)
+                         : eliminate<masses, a, first_factors, fixed>(block, x, wanted);
     out.untouched = wanted & carried.within(error, splat(1.0));
     mask active = wanted & block.movable & ~out.untouched & finite(error) & less_equal(error, splat(call.worst_trial));
     if (guess) {
@@ -43,9 +43,9 @@ HOL_INLINE Outcome iterate(const Block &block, Newton &x, const PositionsCall &c
                 substitute_back<fixed>(block, x, true, false, false, active);
             else
                 substitute_back<fixed>(block, x, false, false, false, active);
-        } else if (careful || __builtin_expect(bits(active) != all_lanes, 0)) {
+        } else if (extended || __builtin_expect(bits(active) != all_lanes, 0)) {
             const Newton copy = x;
-            substitute_back_in(block, copy, first, careful, active);
+            substitute_back_in(block, copy, first, extended, active);
         } else if (first)
             substitute_back<fixed>(block, x, true, false, true, active);
         else
@@ -57,12 +57,12 @@ HOL_INLINE Outcome iterate(const Block &block, Newton &x, const PositionsCall &c
             ++out.solves;
             if (call.report) {
                 const Newton copy = x;
-                error = careful ? correct_bonds(block, copy) : residuals(block, copy);
+                error = extended ? correct_bonds(block, copy) : residuals(block, copy);
             }
             break;
         }
         const vec before = error, expected = rate * before;
-        if (careful) {
+        if (extended) {
             const Newton copy = x;
             error = correct_bonds(block, copy);
         } else {
@@ -81,10 +81,10 @@ HOL_INLINE Outcome iterate(const Block &block, Newton &x, const PositionsCall &c
         }
         active = active & finite(error);
         rate = error / before;
-        const mask renewed = careful ? active : active & worth_new_factors(error, rate, i, wanted_error(call));
-        if (!careful) proven = ~renewed & next_is_last(error, rate);
+        const mask renewed = extended ? active : active & worth_new_factors(error, rate, i, wanted_error(call));
+        if (!extended) proven = ~renewed & next_is_last(error, rate);
         if (!any(renewed)) continue;
-        renew_factors(careful ? careful_factors : renewed_factors, renewed);
+        renew_factors(extended ? extended_factors : renewed_factors, renewed);
         rate = select(renewed, error, rate);
     }
     if (out.solves == 0 && !guess)
@@ -96,9 +96,9 @@ HOL_INLINE Outcome iterate(const Block &block, Newton &x, const PositionsCall &c
 // True if chains of two bonds are solved without looking at the error between solves.
 HOL_INLINE bool tries_two_bonds(const PositionsCall &call) { return call.max_iterations >= two_bonds_solves; }
 
-// Newton's method on any lanes: chains of one or two bonds by short.hpp, and iterate() on what that leaves. careful:
+// Newton's method on any lanes: chains of one or two bonds by short.hpp, and iterate() on what that leaves. extended:
 // with new factors at every step, D becomes the moved bonds.
 Outcome solve_positions(const Block &, Newton &, const PositionsCall &, Carried &, mask wanted, bool guess,
-                        bool careful = false);
+                        bool extended = false);
 
 }  // namespace holonomic::HOL_ISA

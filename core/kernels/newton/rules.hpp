@@ -1,6 +1,6 @@
 // When Newton's method for positions is done, and when it takes new factors: what holds for chains in lanes (V = vec),
-// for molecules (vec and double) and for the careful solver (double). Errors are |D.D - a^2| / a^2, the largest of a
-// lane.
+// for molecules (vec and double) and for the extended-precision solver (double). Errors are |D.D - a^2| / a^2, the
+// largest of a lane.
 #pragma once
 
 #include "core/kernels/arithmetic/width.hpp"

@@ -5,7 +5,7 @@
 namespace holonomic::HOL_ISA {
 
 vec renew(const Block &block, const Newton &x, Factors factors, mask which) {
-    if (factors == careful_factors) return eliminate<either, either, careful_factors>(block, x, which);
+    if (factors == extended_factors) return eliminate<either, either, extended_factors>(block, x, which);
     return choose(
         [&](auto masses, auto a) { return eliminate<same_if(masses), same_if(a), renewed_factors>(block, x, which); },
         !x.w, !x.a2);
@@ -41,12 +41,12 @@ static Outcome try_two_bonds(Newton &x, Carried &carried, mask &longer) {
 }
 
 Outcome solve_positions(const Block &block, Newton &x, const PositionsCall &call, Carried &carried, mask wanted,
-                        bool guess, bool careful) {
+                        bool guess, bool extended) {
     const mask single = wanted & less(x.lengths, splat(1.5));
     mask longer = wanted & ~single;
     Outcome out = {}, two = {};
     vec tau[2] = {};
-    if (!careful && !guess && tries_two_bonds(call) && any(longer & less(x.lengths, splat(2.5)))) {
+    if (!extended && !guess && tries_two_bonds(call) && any(longer & less(x.lengths, splat(2.5)))) {
         two = try_two_bonds(x, carried, longer);
         tau[0] = x.tau[0];
         tau[1] = x.tau[1];
@@ -54,12 +54,12 @@ Outcome solve_positions(const Block &block, Newton &x, const PositionsCall &call
     if (any(longer))
         out = choose(
             [&](auto masses, auto a) {
-                return iterate<same_if(masses), same_if(a)>(block, x, call, carried, longer, guess, careful);
+                return iterate<same_if(masses), same_if(a)>(block, x, call, carried, longer, guess, extended);
             },
             !x.w, !x.a2);
     else
         for (long k = 0; k < block.n; ++k) x.tau[k] = vec{};
-    if (careful) {  // D has been moved by all corrections
+    if (extended) {  // D has been moved by all corrections
         x.step = x.correction;
         for (long k = 0; k < block.n; ++k) x.correction[k] = vec{};
     }

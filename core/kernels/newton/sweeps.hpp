@@ -82,17 +82,17 @@ HOL_INLINE vec largest_error(const Newton &x, vec worst, vec y) {
     return mul_add(y, vec{}, relative_error<a>(x, worst));
 }
 
-enum Factors { first_factors, renewed_factors, careful_factors };
+enum Factors { first_factors, renewed_factors, extended_factors };
 
 // Eliminates with the Jacobian at D and substitutes forward. Returns the largest error. E is a fraction over four
 // bonds, as in Sweep.
 //   first_factors    D is as it was loaded; all lanes get factors
 //   renewed_factors  D moved by the corrections so far; the lanes in `which` get factors
-//   careful_factors  D as it stands; the lanes in `which`; a division per bond, and nothing that cancels
+//   extended_factors  D as it stands; the lanes in `which`; a division per bond, and nothing that cancels
 template <Same masses, Same a, Factors factors, int fixed = 0>
 HOL_INLINE vec eliminate(const Block &block, const Newton &x, mask which) {
     constexpr bool moved = factors == renewed_factors, all = factors == first_factors,
-                   careful = factors == careful_factors;
+                   extended = factors == extended_factors;
     const long n = fixed > 0 ? fixed : block.n;
     Mover<masses> mover(x);
     vec3 d = moved ? mover.bond(x, 0) : x.D[0];
@@ -114,7 +114,7 @@ HOL_INLINE vec eliminate(const Block &block, const Newton &x, mask which) {
         if (!moved) d = x.D[k];
         const vec q1 = dot(d1, b1);
         const vec lower = dot(d1, x.b[k]), upper = dot(b1, d);
-        vec X = careful ? dot(cross(d, d1), cross(x.b[k], b1)) : mul_add(q, q1, -(lower * upper));
+        vec X = extended ? dot(cross(d, d1), cross(x.b[k], b1)) : mul_add(q, q1, -(lower * upper));
         const vec wP = times_w<masses>(x, k + 1, rP);
         vec up = wP * upper;
         down = wP * lower;
@@ -126,7 +126,7 @@ HOL_INLINE vec eliminate(const Block &block, const Newton &x, mask which) {
         }
         row.up = all ? up : select(which, up, row.up);
         e.pass(F1, times_w<masses>(x, k + 1, times_w<masses>(x, k + 1, X)), times_w<masses>(x, k + 1, q1));
-        if (careful || (k & 3) == 3) e = {e.A * rF, splat(1.0)};
+        if (extended || (k & 3) == 3) e = {e.A * rF, splat(1.0)};
         q = q1;
         if (moved) d = d1;
     };
@@ -134,7 +134,7 @@ HOL_INLINE vec eliminate(const Block &block, const Newton &x, mask which) {
         go_up<fixed>(block, bond);
     } else {
         long k = 0;
-        if (!careful)
+        if (!extended)
             for (; k + 4 < block.n_min; k += 4) {
                 bond(k, false);
                 bond(k + 1, false);

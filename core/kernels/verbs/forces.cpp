@@ -19,9 +19,9 @@ static mask forward_forces(const Block &block, const Reader &in, const System &s
 }
 
 // With compensated products of unrounded bond vectors, which are good in all lanes.
-static mask forward_carefully(const Block &block, const Reader &in, const System &s) {
+static mask forward_extended(const Block &block, const Reader &in, const System &s) {
     in.load(0, block.n, s.D, s.D_low, s.t);
-    block.uniform_w ? forward_careful<true>(block, s) : forward_careful<false>(block, s);
+    block.uniform_w ? forward_extended<true>(block, s) : forward_extended<false>(block, s);
     return ~none();
 }
 
@@ -78,8 +78,8 @@ static void forces_block(const Block &block, const Lane *lane, const ForcesCall 
     // that are in the way.
     mask rest = block.in_use();
     const mask tried = ~good & (calm | all_if(call.rescaled));
-    for (int careful = 0; careful < 2 && any(rest); ++careful) {
-        if (careful) good = forward_carefully(block, Reader(block, call.box, terms, r, v, f, true), s) & tried;
+    for (int extended = 0; extended < 2 && any(rest); ++extended) {
+        if (extended) good = forward_extended(block, Reader(block, call.box, terms, r, v, f, true), s) & tried;
         backward(0, block.n, s.t, s.L);
         good = good & finite(s.t[0]) & rest;
         finish_forces(block, call, s, good, g, update, arena, tally);
@@ -140,7 +140,7 @@ static int64_t forces_of_molecules(const ForcesCall &call, const Unit &unit, con
         for (int k = 0; k < N; ++k)
             sweep.step(
                 k, [&]() HOL_FORCED { return t[k]; }, k % 4 == 0, false);
-        if (__builtin_expect(any(sweep.doubt() | ~sweep.calm()), 0)) break;
+        if (__builtin_expect(any(sweep.flag() | ~sweep.calm()), 0)) break;
         backward(0, N, t, L);
         if (N >= fewest_with_virial && __builtin_expect(call.virial, 0)) count_virial<N>(D, t, n, splat(1.0), tally);
         if (g) store_pulls(D, t, place, g, call.add);

@@ -1,8 +1,8 @@
 // Constraint forces of molecules that are no chains, and multipliers for given right-hand sides.
 #include "core/kernels/memory/parts.hpp"
 #include "core/kernels/molecules/forces.hpp"
-#include "core/kernels/molecules/network/network.hpp"
-#include "core/kernels/molecules/star/star_linear.hpp"
+#include "core/kernels/molecules/network/verbs.hpp"
+#include "core/kernels/molecules/star/linear.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
 namespace holonomic::HOL_ISA {
@@ -21,10 +21,10 @@ static bool reads_columns(const ForcesCall &call) {
 }
 
 static void forces_of_blocks(const ForcesCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
-    if (unit.forests) return forests_forces(call, unit, scratch, tally);
+    if (unit.tree_batches) return batches_forces(call, unit, scratch, tally);
     const bool packed =
         call.r.packed && (!call.v.x || call.v.packed) && (!call.f.x || call.f.packed) && (!call.g.x || call.g.packed);
-    const Way way = unit.schedule->way.forces;
+    const Way way = unit.elimination->way.forces;
     if (way == Way::network) return solve_networks(call, unit, packed, scratch, tally);
     if (way == Way::triangle) {
         const TriangleCall triangles = {call.r,      call.v,       call.f,   nullptr,     call.g,
@@ -33,7 +33,7 @@ static void forces_of_blocks(const ForcesCall &call, const MoleculeUnit &unit, d
                                scratch);
     }
     NextMolecules ahead({&call.r, &call.v, &call.f, &call.g}, call.lambda);
-    const LinearWork<ForcesCall> work = {call, *unit.schedule, way, packed, tally, unit.team, ahead};
+    const LinearWork<ForcesCall> work = {call, *unit.elimination, way, packed, tally, unit.team, ahead};
     if (way == Way::star && do_stars<3>(StarForcesVerb{call, tally}, work, unit, scratch)) return;
     for_each_block(unit, scratch, ahead, work);
 }
@@ -52,9 +52,9 @@ void molecules_forces(const ForcesCall &call, const MoleculeUnit &unit, double *
 }
 
 void molecules_solve(const SolveCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
-    if (unit.forests) return forests_solve(call, unit, scratch, tally);
+    if (unit.tree_batches) return batches_solve(call, unit, scratch, tally);
     const bool packed = call.r.packed && (!call.g.x || call.g.packed);
-    const Way way = unit.schedule->way.given;
+    const Way way = unit.elimination->way.given;
     if (way == Way::network) return solve_networks(call, unit, packed, scratch, tally);
     if (way == Way::triangle) {
         const AtomArray none = {};
@@ -63,7 +63,7 @@ void molecules_solve(const SolveCall &call, const MoleculeUnit &unit, double *sc
         return solve_triangles(TriangleLinearVerb(triangles, nullptr, &call, tally), unit, packed, false, scratch);
     }
     NextMolecules ahead({&call.r, &call.g}, call.lambda);
-    const LinearWork<SolveCall> work = {call, *unit.schedule, way, packed, tally, unit.team, ahead};
+    const LinearWork<SolveCall> work = {call, *unit.elimination, way, packed, tally, unit.team, ahead};
     for_each_block(unit, scratch, ahead, work);
 }
 

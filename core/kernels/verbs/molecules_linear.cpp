@@ -1,15 +1,15 @@
 // The linear equations of molecules that are no chains (molecules/solve.hpp), for the verbs that have some.
 #include "core/kernels/molecules/armed_tree/sweeps.hpp"
-#include "core/kernels/molecules/list/flat_refine.hpp"
 #include "core/kernels/molecules/solve.hpp"
-#include "core/kernels/molecules/tree/doubtful_joint.hpp"
+#include "core/kernels/molecules/sparse_ldl/refinement.hpp"
+#include "core/kernels/molecules/tree/flagged_joint.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 
 // Lanes that plain arithmetic answers for, once the equations are solved.
 template <class V>
 static inline unsigned good_lanes(Linear<V> &z) {
-    const MaskOf<V> good = z.x.in_use() & ~less(z.x.slack, V{});
+    const MaskOf<V> good = z.x.in_use() & ~less(z.x.margin, V{});
     return bits(good & finite_solution(z.x));
 }
 
@@ -60,11 +60,11 @@ unsigned solve_kept(Linear<double> &z, const AtomArray &v, const AtomArray &f, c
 }
 
 template <class V>
-static inline unsigned prove_or_refine(const FlatLinear<V> &x) {
-    const unsigned proven = FlatProof<V>::solve(x);
-    return proven == bits(x.in_use()) ? proven : FlatRefine<V>(x).refine(proven);
+static inline unsigned prove_or_refine(const LdlLinear<V> &x) {
+    const unsigned proven = LdlErrorBound<V>::solve(x);
+    return proven == bits(x.in_use()) ? proven : LdlRefinement<V>(x).refine(proven);
 }
-unsigned solve_and_refine(const FlatLinear<vec> &x) { return prove_or_refine(x); }
-unsigned solve_and_refine(const FlatLinear<double> &x) { return prove_or_refine(x); }
+unsigned solve_and_refine(const LdlLinear<vec> &x) { return prove_or_refine(x); }
+unsigned solve_and_refine(const LdlLinear<double> &x) { return prove_or_refine(x); }
 
 }  // namespace holonomic::HOL_ISA::graph

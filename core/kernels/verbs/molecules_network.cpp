@@ -1,7 +1,7 @@
 // Networks (molecules/network/): their equations for all verbs, compiled once.
 #include "core/kernels/molecules/network/linear.hpp"
-#include "core/kernels/molecules/network/network.hpp"
 #include "core/kernels/molecules/network/positions.hpp"
+#include "core/kernels/molecules/network/verbs.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
 namespace holonomic::HOL_ISA {
@@ -27,20 +27,20 @@ static inline bool pull_network(const Call &call, const NetLinear &x, Tally &tal
     return true;
 }
 
-bool solve_network(const ForcesCall &call, const Schedule &s, const MoleculeLane &lane, bool packed,
+bool solve_network(const ForcesCall &call, const EliminationPlan &s, const MoleculeLane &lane, bool packed,
                    const LongTeam *team, double *scratch, Tally &tally) {
     const Inputs in = {&call.v, &call.f, nullptr, false};
     const int terms = (call.v.x ? squares : 0) | (call.f.x ? pulls : 0);
     return pull_network(call, NetLinear(*s.network, lane, packed, team, call.box, call.r, in, terms, {scratch}), tally);
 }
 
-bool solve_network(const SolveCall &call, const Schedule &s, const MoleculeLane &lane, bool packed,
+bool solve_network(const SolveCall &call, const EliminationPlan &s, const MoleculeLane &lane, bool packed,
                    const LongTeam *team, double *scratch, Tally &tally) {
     const Inputs in = {nullptr, nullptr, call.rhs, false};
     return pull_network(call, NetLinear(*s.network, lane, packed, team, call.box, call.r, in, given, {scratch}), tally);
 }
 
-bool solve_network(const VelocitiesCall &call, const Schedule &s, const MoleculeLane &lane, bool packed,
+bool solve_network(const VelocitiesCall &call, const EliminationPlan &s, const MoleculeLane &lane, bool packed,
                    const LongTeam *team, double *scratch, Tally &tally) {
     const Inputs in = {&call.v, nullptr, nullptr, true, call.strain};
     const NetLinear x(*s.network, lane, packed, team, call.box, call.r, in, rates, {scratch});
@@ -53,7 +53,7 @@ bool solve_network(const VelocitiesCall &call, const Schedule &s, const Molecule
     return true;
 }
 
-bool solve_network(const PositionsCall &call, const Schedule &s, const MoleculeLane &lane, bool packed,
+bool solve_network(const PositionsCall &call, const EliminationPlan &s, const MoleculeLane &lane, bool packed,
                    const LongTeam *team, double *scratch, Tally &tally) {
     return NetPositions(call, *s.network, s.fixed, lane, packed, team, {scratch}, tally).solve();
 }

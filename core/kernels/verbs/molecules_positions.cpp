@@ -1,42 +1,43 @@
 // Position level of molecules that are no chains.
 #include "core/kernels/memory/parts.hpp"
 #include "core/kernels/molecules/linear.hpp"
-#include "core/kernels/molecules/list/flat_linear.hpp"
-#include "core/kernels/molecules/list/flat_proof.hpp"
-#include "core/kernels/molecules/network/network.hpp"
+#include "core/kernels/molecules/network/verbs.hpp"
 #include "core/kernels/molecules/positions.hpp"
-#include "core/kernels/molecules/star/star_positions.hpp"
+#include "core/kernels/molecules/sparse_ldl/error_bound.hpp"
+#include "core/kernels/molecules/sparse_ldl/linear.hpp"
+#include "core/kernels/molecules/star/positions.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
 namespace holonomic::HOL_ISA {
 
 using namespace graph;
 
-// What a block takes at the greediest level, and the careful solver behind it. That of a metric comes in its place.
+// What a block takes at the greediest level, and the extended-precision solver behind it. That of a metric comes in its
+// place.
 template <class V>
-static int64_t block_bytes(const Schedule &s) {
+static int64_t block_bytes(const EliminationPlan &s) {
     const int64_t linear = Linear<V>::values(s), newton = Newton<V>::values(s);
     return static_cast<int64_t>(sizeof(V)) * (linear > newton ? linear : newton);
 }
 
 template <class V>
-static int64_t list_bytes(const FlatList &s) {
-    const int64_t linear = FlatLinear<V>::values(s), newton = FlatNewton<V>::values(s);
+static int64_t ldl_bytes(const LdlPlan &s) {
+    const int64_t linear = LdlLinear<V>::values(s), newton = LdlNewton<V>::values(s);
     return static_cast<int64_t>(sizeof(V)) * (linear > newton ? linear : newton);
 }
 
-int64_t molecules_scratch_bytes(const Schedule &s) {
+int64_t molecules_scratch_bytes(const EliminationPlan &s) {
     if (s.way.positions == Way::network) {
-        const int64_t careful = s.careful ? s.careful->careful_bytes + 64 : 0,
+        const int64_t extended = s.extended ? s.extended->extended_bytes + 64 : 0,
                       own = HOL_NETWORKS::network_bytes(*s.network);
-        return own > careful ? own : careful;
+        return own > extended ? own : extended;
     }
-    const int64_t most = s.flat    ? (s.alone ? list_bytes<double>(*s.flat) : list_bytes<vec>(*s.flat))
+    const int64_t most = s.ldl     ? (s.alone ? ldl_bytes<double>(*s.ldl) : ldl_bytes<vec>(*s.ldl))
                          : s.alone ? block_bytes<double>(s)
                                    : block_bytes<vec>(s),
                   paths = s.paths ? path_positions_bytes(s) : 0,
                   armed = ArmedTree::values(s) * static_cast<int64_t>(sizeof(double)),
-                  more = armed > paths ? armed : paths, linear = (most > more ? most : more) + 64 + s.careful_bytes,
+                  more = armed > paths ? armed : paths, linear = (most > more ? most : more) + 64 + s.extended_bytes,
                   metric = metric_bytes(s);
     return linear > metric ? linear : metric;
 }
@@ -45,9 +46,9 @@ int64_t molecules_scratch_bytes(const Schedule &s) {
 struct PathsPositionsWork : PositionsWork {
     template <class V>
     void block(const MoleculeLane *lane, int used, bool, double *scratch) const {
-        if (path_positions(call, schedule, *lane, team, scratch, tally)) return;
-        if (schedule.flat) return along_list<V>(lane, used, false, scratch);
-        if (schedule.type == Schedule::ring) return solve<RingNewton<V>>(lane, used, false, scratch);
+        if (path_positions(call, elimination, *lane, team, scratch, tally)) return;
+        if (elimination.ldl) return by_ldl<V>(lane, used, false, scratch);
+        if (elimination.type == EliminationPlan::ring) return solve<RingNewton<V>>(lane, used, false, scratch);
         solve<Newton<V>>(lane, used, false, scratch);
     }
 };
@@ -57,14 +58,14 @@ static bool reads_columns(const PositionsCall &call) {
 }
 
 static void positions_of_blocks(const PositionsCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
-    const Way way = unit.schedule->way.positions;
-    if (unit.forests && moves_in_forest(way)) return forests_positions(call, unit, scratch, tally);
+    const Way way = unit.elimination->way.positions;
+    if (unit.tree_batches && moves_in_batch(way)) return batches_positions(call, unit, scratch, tally);
     const bool packed = call.r.packed && call.r_ref.packed && (!call.v.x || call.v.packed);
     if (way == Way::network) return solve_networks(call, unit, packed, scratch, tally);
     if (way == Way::triangle)
         return for_each_triangle(TrianglePositionsVerb{call, tally}, unit, packed, scratch, reads_columns(call));
     NextMolecules ahead({&call.r_ref, &call.r, &call.v}, call.lambda);
-    const PositionsWork work = {call, *unit.schedule, packed, tally, unit.team, ahead};
+    const PositionsWork work = {call, *unit.elimination, packed, tally, unit.team, ahead};
     if (way == Way::paths) {
         const PathsPositionsWork along_paths = {work};
         return for_each_block(unit, scratch, ahead, along_paths);

@@ -1,7 +1,7 @@
 // Velocity level of molecules that are no chains.
 #include "core/kernels/memory/parts.hpp"
-#include "core/kernels/molecules/network/network.hpp"
-#include "core/kernels/molecules/star/star_linear.hpp"
+#include "core/kernels/molecules/network/verbs.hpp"
+#include "core/kernels/molecules/star/linear.hpp"
 #include "core/kernels/molecules/velocities.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
@@ -12,14 +12,14 @@ using namespace graph;
 static bool reads_columns(const VelocitiesCall &call) { return is_in_columns(call.r) && is_in_columns(call.v); }
 
 static void velocities_of_blocks(const VelocitiesCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
-    if (unit.forests) return forests_velocities(call, unit, scratch, tally);
+    if (unit.tree_batches) return batches_velocities(call, unit, scratch, tally);
     const bool packed = call.r.packed && call.v.packed;
-    const Way way = unit.schedule->way.forces;
+    const Way way = unit.elimination->way.forces;
     if (way == Way::network) return solve_networks(call, unit, packed, scratch, tally);
     if (way == Way::triangle)
         return for_each_triangle(TriangleVelocitiesVerb(call, tally), unit, packed, scratch, reads_columns(call));
     NextMolecules ahead({&call.r, &call.v}, call.lambda);
-    const LinearWork<VelocitiesCall> work = {call, *unit.schedule, way, packed, tally, unit.team, ahead};
+    const LinearWork<VelocitiesCall> work = {call, *unit.elimination, way, packed, tally, unit.team, ahead};
     if (way == Way::star && do_stars<3>(StarVelocitiesVerb{call, tally}, work, unit, scratch)) return;
     for_each_block(unit, scratch, ahead, work);
 }

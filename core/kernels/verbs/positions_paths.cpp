@@ -1,8 +1,8 @@
-// Position level of one large molecule along its paths (molecules/paths/path_plan.hpp): knots, then pieces of paths,
+// Position level of one large molecule along its paths (molecules/paths/plan.hpp): junctions, then pieces of paths,
 // then whether what they have found fits where they meet, and only then anything is written. As in a long chain
 // (positions_long.cpp) the result does not rest on how far a bond is felt: all lengths have been tested by then.
-#include "core/kernels/molecules/paths/path_knots.hpp"
-#include "core/kernels/molecules/paths/path_pieces.hpp"
+#include "core/kernels/molecules/paths/junctions.hpp"
+#include "core/kernels/molecules/paths/pieces.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
 namespace holonomic::HOL_ISA {
@@ -10,19 +10,19 @@ namespace holonomic::HOL_ISA {
 using namespace graph;
 
 static int64_t part_values(const PathPlan &plan) {
-    const int64_t knots = knot_values(plan), pieces = scratch_doubles(longest_piece);
-    return knots > pieces ? knots : pieces;
+    const int64_t junctions = junction_values(plan), pieces = scratch_doubles(longest_piece);
+    return junctions > pieces ? junctions : pieces;
 }
 static int64_t up_to_line(int64_t n) { return (n + most_lanes - 1) / most_lanes * most_lanes; }
 
-int64_t path_positions_bytes(const Schedule &s) {
+int64_t path_positions_bytes(const EliminationPlan &s) {
     return static_cast<int64_t>(sizeof(double)) *
            (up_to_line(s.n_bonds + 3 * static_cast<int64_t>(s.paths->n_atoms)) + part_values(*s.paths));
 }
 
 static void solve(PathsWork &x, Tally &sum) {
-    solve_parts(x, n_knot_blocks(x.plan), sum, [&](int64_t j, double *scratch, Tally &part) {
-        return solve_knots(x, knots_of_block(x.plan, j), scratch, part);
+    solve_parts(x, n_junction_blocks(x.plan), sum, [&](int64_t j, double *scratch, Tally &part) {
+        return solve_junctions(x, junctions_of_block(x.plan, j), scratch, part);
     });
     if (x.has(window_failed)) return;
     solve_parts(x, n_piece_blocks(x.plan), sum,
@@ -38,7 +38,7 @@ static bool all_fit(PathsWork &x, Tally &sum) {
 }
 
 // Bonds of no path.
-static void add_virial_of_knots(const PathsWork &x, const Schedule &s, Tally &sum) {
+static void add_virial_of_junctions(const PathsWork &x, const EliminationPlan &s, Tally &sum) {
     const Atoms<double> at(&x.molecule, 1, x.packed);
     MoleculesVirial<double> virial;
     for (int32_t k = 0; k < x.plan.n_bonds; ++k) {
@@ -51,17 +51,17 @@ static void add_virial_of_knots(const PathsWork &x, const Schedule &s, Tally &su
     virial.count(1, 1 / (x.call.dt * x.call.dt), sum);
 }
 
-static void write_all(PathsWork &x, const Schedule &s, bool moved, Tally &sum) {
+static void write_all(PathsWork &x, const EliminationPlan &s, bool moved, Tally &sum) {
     for_parts(x, n_piece_blocks(x.plan), sum,
               [&](int64_t j, double *scratch, Tally &part) { finish_pieces(x, j, moved, scratch, part); });
     for (int32_t k = 0; k < x.plan.n_bonds && x.call.lambda; ++k) write_lambda(x, x.plan.bond[k], 1, moved);
     if (!moved) return;
-    move_knots(x, s.fixed);
-    if (x.call.virial) add_virial_of_knots(x, s, sum);
+    move_junctions(x, s.fixed);
+    if (x.call.virial) add_virial_of_junctions(x, s, sum);
 }
 
-bool path_positions(const PositionsCall &call, const Schedule &s, const MoleculeLane &molecule, const LongTeam *team,
-                    double *scratch, Tally &tally) {
+bool path_positions(const PositionsCall &call, const EliminationPlan &s, const MoleculeLane &molecule,
+                    const LongTeam *team, double *scratch, Tally &tally) {
     const PositionsCall strict = call_for_pieces(call);
     const bool packed = call.r.packed && call.r_ref.packed && (!call.v.x || call.v.packed);
     Vector3<double> *const move = reinterpret_cast<Vector3<double> *>(scratch + s.n_bonds);

@@ -13,7 +13,7 @@ namespace holonomic::HOL_ISA {
 constexpr int64_t long_in_cache = 65536;
 
 void eliminate_block(int terms, const Box &box, const Cut &cut, const Lane &lane, int64_t j, const AtomArray &r,
-                     const AtomArray &v, const AtomArray &f, bool careful, double *store, const Arena &memory,
+                     const AtomArray &v, const AtomArray &f, bool extended, double *store, const Arena &memory,
                      const double *strain) {
     Arena arena = memory;
     SegmentBlock s = segment_block(cut, j, lane);
@@ -23,12 +23,12 @@ void eliminate_block(int terms, const Box &box, const Cut &cut, const Lane &lane
     const Packed pf = open(f, s.block, s.lane, arena, true);
     const SegmentStore x(store, cut, j);
     const Block own = own_block(s);
-    Reader in(own, box, terms == rate ? rate : terms & (velocity_squared | force_difference), pr, pv, pf, careful);
+    Reader in(own, box, terms == rate ? rate : terms & (velocity_squared | force_difference), pr, pv, pf, extended);
     in.strain = strain;
     if (cut.n_bonds > long_in_cache && j + 1 < cut.blocks && in_place(r, lane)) in.ahead = 3 * W * cut.rows(j);
     const SeparatorsBehind behind(s, box, pr);
     choose([&](auto uniform, auto exactly) { eliminate<uniform, exactly>(s, in, behind, x); }, s.block.uniform_w,
-           careful);
+           extended);
     if (x.past_cache) settle_stores();
 }
 
@@ -50,20 +50,20 @@ bool are_extreme(const Summary *all, int64_t blocks) {
     return !(ordinary(most_q, length * length) && ordinary(most_w, mass) && ordinary(most_q * most_w, mass));
 }
 
-// Solves for the separators of the first blocks. `careful` says how the segments were eliminated.
-JoinResult long_join(const Lane &lane, int64_t blocks, bool careful, double *store) {
+// Solves for the separators of the first blocks. `extended` says how the segments were eliminated.
+JoinResult long_join(const Lane &lane, int64_t blocks, bool extended, double *store) {
     const Cut cut(lane.n_bonds);
     Summary *const all = SegmentStore(store, cut, 0).summary;
-    const auto doubt = [&] { return careful ? join_bad : are_extreme(all, blocks) ? join_extreme : join_doubtful; };
+    const auto flag = [&] { return extended ? join_bad : are_extreme(all, blocks) ? join_extreme : join_flagged; };
     double E = 0, y = 0;
     for (int64_t j = 0; j < blocks; ++j) {
         Summary &s = all[j];
         if (j == 0) E = relative_w(lane, 0) * s.q[0];
-        if (any(s.doubt)) return doubt();
+        if (any(s.flag)) return flag();
         for (int i = 0; i < W; ++i) {
             const double P = E + s.c[i], yhat = (y + s.b[i]) + s.T[i], S = s.E[i] * E + s.a[i];
-            if (!careful && is_doubtful_join(s, i, S, P, 1.0)) return doubt();
-            if (!(P - P == 0)) return doubt();  // what is over it would be zero
+            if (!extended && is_flagged_join(s, i, S, P, 1.0)) return flag();
+            if (!(P - P == 0)) return flag();  // what is over it would be zero
             s.t[i] = yhat / P;
             s.up[i] = s.f[i] / P;
             E = S / P;
@@ -76,7 +76,7 @@ JoinResult long_join(const Lane &lane, int64_t blocks, bool careful, double *sto
         for (int i = W - 1; i >= 0; --i) {
             t = j == blocks - 1 && i == W - 1 ? s.t[i] : s.t[i] + s.up[i] * t;
             s.t[i] = t;
-            if (!(t - t == 0)) return doubt();
+            if (!(t - t == 0)) return flag();
         }
     }
     return join_good;
@@ -214,10 +214,10 @@ void finish_block(bool weighted, const Box &box, const AtomArray &r, const AtomA
     if (out.has_pulls) close_segments(pulled, s, lane, out.pulls, add);
 }
 
-void long_forces_eliminate(const ForcesCall &call, const Lane &lane, int64_t j, bool careful, double *store,
+void long_forces_eliminate(const ForcesCall &call, const Lane &lane, int64_t j, bool extended, double *store,
                            double *scratch) {
     eliminate_block((call.v.x ? velocity_squared : 0) | (call.f.x ? force_difference : 0), call.box, Cut(lane.n_bonds),
-                    lane, j, call.r, call.v, call.f, careful, store, Arena(scratch, longest_piece));
+                    lane, j, call.r, call.v, call.f, extended, store, Arena(scratch, longest_piece));
 }
 
 void long_forces_finish(const ForcesCall &call, const Lane &lane, int64_t j, double *store, double *scratch,
@@ -227,9 +227,9 @@ void long_forces_finish(const ForcesCall &call, const Lane &lane, int64_t j, dou
                  Arena(scratch, longest_piece), tally);
 }
 
-void long_velocities_eliminate(const VelocitiesCall &call, const Lane &lane, int64_t j, bool careful, double *store,
+void long_velocities_eliminate(const VelocitiesCall &call, const Lane &lane, int64_t j, bool extended, double *store,
                                double *scratch) {
-    eliminate_block(rate, call.box, Cut(lane.n_bonds), lane, j, call.r, call.v, AtomArray{}, careful, store,
+    eliminate_block(rate, call.box, Cut(lane.n_bonds), lane, j, call.r, call.v, AtomArray{}, extended, store,
                     Arena(scratch, longest_piece), call.strain);
 }
 

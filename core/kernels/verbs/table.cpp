@@ -1,6 +1,6 @@
 // The table through which core calls the kernels of one instruction set.
-#include "core/kernels/careful/chain.hpp"
 #include "core/kernels/eliminate/segment.hpp"
+#include "core/kernels/extended/chain.hpp"
 #include "core/kernels/isa/lanes.hpp"
 #include "core/kernels/memory/arena.hpp"
 #include "core/kernels/memory/cut.hpp"
@@ -13,9 +13,9 @@ namespace holonomic::HOL_ISA {
 
 static_assert(W <= most_lanes, "Box and the alignment of a thread's memory are made for fewer lanes");
 
-// The careful solver's memory stands behind that of a block.
+// the extended-precision solver's memory stands behind that of a block.
 static int64_t scratch_bytes(int64_t n_bonds) {
-    return scratch_doubles(n_bonds) * static_cast<int64_t>(sizeof(double)) + careful::chain_scratch_bytes(n_bonds);
+    return scratch_doubles(n_bonds) * static_cast<int64_t>(sizeof(double)) + extended::chain_scratch_bytes(n_bonds);
 }
 
 #ifndef HOL_CHAINS_ONLY
@@ -37,7 +37,7 @@ const Kernels kernels = {
     {long_blocks, long_bytes, long_velocities_eliminate, long_join, long_velocities_finish},
     {long_blocks, long_positions_bytes, long_positions},
     {long_blocks, long_metric_bytes, long_metric},
-    {molecules_scratch_bytes, forest_scratch_bytes, molecules_forces, molecules_velocities, molecules_positions,
+    {molecules_scratch_bytes, batch_scratch_bytes, molecules_forces, molecules_velocities, molecules_positions,
      molecules_metric, molecules_solve},
     {tridiagonal_solve, tridiagonal_pivots},
     {bodies_scratch_bytes, bodies_forces, bodies_velocities, bodies_positions},

@@ -17,9 +17,9 @@ static mask forward_velocities(const Block &block, const Reader &in, const Proje
 }
 
 // With compensated products of unrounded bond vectors, which are good in all lanes.
-static mask forward_carefully(const Block &block, const Reader &in, const Projection &x) {
+static mask forward_extended(const Block &block, const Reader &in, const Projection &x) {
     in.load(0, block.n, x.s.D, x.s.D_low, x.s.t, x.v);
-    block.uniform_w ? forward_careful<true>(block, x.s) : forward_careful<false>(block, x.s);
+    block.uniform_w ? forward_extended<true>(block, x.s) : forward_extended<false>(block, x.s);
     return ~none();
 }
 
@@ -85,11 +85,11 @@ static void velocities_block(const Block &block, const Lane *lane, const Velocit
     const Packed r = open(call.r, block, lane, arena, true), v = open(call.v, block, lane, arena, true);
     const Projection x(block.n, arena, call.strain);
     mask rest = block.in_use(), calm = none(), tried = none();  // as in forces.cpp
-    for (int careful = 0; careful < 2 && any(rest); ++careful) {
-        Reader in(block, call.box, kept_rate, r, v, v, careful);
+    for (int extended = 0; extended < 2 && any(rest); ++extended) {
+        Reader in(block, call.box, kept_rate, r, v, v, extended);
         in.strain = call.strain;
-        mask good = careful ? forward_carefully(block, in, x) & tried : forward_velocities(block, in, x, calm);
-        if (!careful) tried = ~good & (calm | all_if(call.rescaled));
+        mask good = extended ? forward_extended(block, in, x) & tried : forward_velocities(block, in, x, calm);
+        if (!extended) tried = ~good & (calm | all_if(call.rescaled));
         good = good & pull_back(block, x, !call.v.is_float) & rest;
         rest = rest & ~good;
         if (!any(good)) continue;
@@ -141,7 +141,7 @@ static int64_t velocities_of_molecules(const VelocitiesCall &call, const Unit &u
             for (int k = 0; k < N; ++k) left[k] = left[k] + stretching_of(call.strain, D[k]);
         }
         substitute(N, x.correction());
-        if (__builtin_expect(any(sweep.doubt() | ~x.finite(N)), 0)) break;
+        if (__builtin_expect(any(sweep.flag() | ~x.finite(N)), 0)) break;
         if (N >= fewest_with_virial && __builtin_expect(call.virial, 0)) count_virial<N>(D, t, n, block.mass, tally);
         Pull<uniform> correction{block, x, left};
         HOL_UNROLL

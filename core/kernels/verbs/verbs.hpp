@@ -8,14 +8,14 @@
 namespace holonomic::HOL_ISA {
 
 void forces(const ForcesCall &, const Unit &, double *scratch, Tally &);
-void long_forces_eliminate(const ForcesCall &, const Lane &, int64_t block, bool careful, double *store,
+void long_forces_eliminate(const ForcesCall &, const Lane &, int64_t block, bool extended, double *store,
                            double *scratch);
 void long_forces_finish(const ForcesCall &, const Lane &, int64_t block, double *store, double *scratch, Tally &);
 
-JoinResult long_join(const Lane &, int64_t blocks, bool careful, double *store);
+JoinResult long_join(const Lane &, int64_t blocks, bool extended, double *store);
 
 void velocities(const VelocitiesCall &, const Unit &, double *scratch, Tally &);
-void long_velocities_eliminate(const VelocitiesCall &, const Lane &, int64_t block, bool careful, double *store,
+void long_velocities_eliminate(const VelocitiesCall &, const Lane &, int64_t block, bool extended, double *store,
                                double *scratch);
 void long_velocities_finish(const VelocitiesCall &, const Lane &, int64_t block, double *store, double *scratch,
                             Tally &);
@@ -27,26 +27,26 @@ bool long_positions(const PositionsCall &, const Lane &, const LongTeam &, doubl
 void metric(const MetricCall &, const Unit &, double *scratch, Tally &);
 int64_t long_metric_bytes(int64_t n_bonds);
 bool long_metric(const MetricCall &, const Lane &, const LongTeam &, double *store, Tally &);
-int64_t metric_bytes(const Schedule &);
+int64_t metric_bytes(const EliminationPlan &);
 void molecules_metric(const MetricCall &, const MoleculeUnit &, double *scratch, Tally &);
 
-int64_t molecules_scratch_bytes(const Schedule &);
-int64_t forest_scratch_bytes(const Forest &);
-void forests_forces(const ForcesCall &, const MoleculeUnit &, double *scratch, Tally &);
-void forests_solve(const SolveCall &, const MoleculeUnit &, double *scratch, Tally &);
-void forests_positions(const PositionsCall &, const MoleculeUnit &, double *scratch, Tally &);
-void forests_velocities(const VelocitiesCall &, const MoleculeUnit &, double *scratch, Tally &);
+int64_t molecules_scratch_bytes(const EliminationPlan &);
+int64_t batch_scratch_bytes(const TreeBatch &);
+void batches_forces(const ForcesCall &, const MoleculeUnit &, double *scratch, Tally &);
+void batches_solve(const SolveCall &, const MoleculeUnit &, double *scratch, Tally &);
+void batches_positions(const PositionsCall &, const MoleculeUnit &, double *scratch, Tally &);
+void batches_velocities(const VelocitiesCall &, const MoleculeUnit &, double *scratch, Tally &);
 void molecules_forces(const ForcesCall &, const MoleculeUnit &, double *scratch, Tally &);
 void molecules_velocities(const VelocitiesCall &, const MoleculeUnit &, double *scratch, Tally &);
 void molecules_positions(const PositionsCall &, const MoleculeUnit &, double *scratch, Tally &);
-int64_t path_positions_bytes(const Schedule &);
-bool path_positions(const PositionsCall &, const Schedule &, const MoleculeLane &, const LongTeam *, double *scratch,
-                    Tally &);
+int64_t path_positions_bytes(const EliminationPlan &);
+bool path_positions(const PositionsCall &, const EliminationPlan &, const MoleculeLane &, const LongTeam *,
+                    double *scratch, Tally &);
 void molecules_solve(const SolveCall &, const MoleculeUnit &, double *scratch, Tally &);
 
 void keep_chains(const KeepCall &, const Unit &, double *scratch, Tally &);
 void solve_kept_chains(const KeptCall &, const Unit &, double *scratch, Tally &);
-bool is_kept(const Schedule &);
+bool is_kept(const EliminationPlan &);
 void keep_molecules(const KeepCall &, const MoleculeUnit &, double *scratch, Tally &);
 void solve_kept_molecules(const KeptCall &, const MoleculeUnit &, double *scratch, Tally &);
 

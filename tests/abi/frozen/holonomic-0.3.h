@@ -281,8 +281,9 @@ HOL_API int hol_chains_add_molecules(hol_chains *chains, int64_t n_molecules, in
  *
  * Bodies are taken as thin as they are: three atoms on a line to 1e-8 of its length are linear. A site must lie on the
  * line of a linear body. Off the plane of a planar one (the lone pairs of TIP5P) it is at its height along the normal,
- * on the side on which it is in `places`, and can have no bond to atoms outside of its body (since 0.3). A bond within a body is satisfied by it: its multiplier is 0.
- * Bodies may share atoms (since 0.2): one is a ball joint, two are a hinge.
+ * on the side on which it is in `places`, and can have no bond to atoms outside of its body (since 0.3). A bond within
+ * a body is satisfied by it: its multiplier is 0. Bodies may share atoms (since 0.2): one is a ball joint, two are a
+ * hinge.
  *
  * Molecules with bodies are numbered behind all others of the set, in the order of their first bodies; their bonds
  * stand in the arrays per bond in the order of the list, after those of earlier calls. All bonds of a molecule have to
@@ -330,9 +331,9 @@ HOL_API int hol_chains_add_rigid_molecules(hol_chains *chains, int64_t n_molecul
  * @param[in] n_relations   >= 1
  * @param[in] sizes         [n_relations], how many atoms each has, >= 2
  * @param[in] atoms         [sum of sizes], the atoms of one relation after the other. An atom of mass 0 is a massless
- *                          site, as in a body; one of infinite mass is held where the caller has it: a centre of mass is
- *                          driven by moving the fixed atom that it is to be at, between r_ref and r, and by its
- *                          velocity in v. Of accelerations it has none
+ *                          site, as in a body; one of infinite mass is held where the caller has it: a centre of mass
+ * is driven by moving the fixed atom that it is to be at, between r_ref and r, and by its velocity in v. Of
+ * accelerations it has none
  * @param[in] coefficients  [sum of sizes]; those of a relation add up to 0, so that nothing depends on the origin
  * @param[in] n_bonds       >= 0; 0: relations alone
  * @param[in] pairs         [n_bonds][2], bonds of the molecules that the relations make, or NULL

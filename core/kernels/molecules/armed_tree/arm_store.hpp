@@ -1,8 +1,8 @@
-// Where the arms of a large molecule (schedule.hpp) are kept while it is solved: each as a chain inside of it.
+// Where the arms of a large molecule (elimination_plan.hpp) are kept while it is solved: each as a chain inside of it.
 #pragma once
 
 #include "core/kernels/eliminate/segment.hpp"
-#include "core/kernels/molecules/schedule.hpp"
+#include "core/kernels/molecules/elimination_plan.hpp"
 #include "core/kernels/molecules/scratch.hpp"
 
 namespace holonomic::HOL_ISA::graph {
@@ -15,7 +15,7 @@ struct Arms {
 };
 
 // Its last bond is the separator behind its last segment.
-HOL_INLINE Cut cut_of(const Schedule::Arm &arm) { return Cut(arm.n_bonds - 1, segment_bonds, true); }
+HOL_INLINE Cut cut_of(const EliminationPlan::Arm &arm) { return Cut(arm.n_bonds - 1, segment_bonds, true); }
 
 // In molecules of more than these, the arm before is fetched early (verbs/segments.cpp).
 constexpr int64_t bonds_of_cache = 65536;
@@ -27,16 +27,16 @@ HOL_INLINE int64_t arm_store_values(int64_t arms, int64_t bonds) {
     constexpr int64_t summary = sizeof(Summary) / sizeof(double), kept = sizeof(Kept) / sizeof(double);
     return arms * ((blocks_of_arm + 1) * summary + (Cut::longest_step + 1) * kept) + bonds / W * kept;
 }
-HOL_INLINE int64_t inner_bonds(const Schedule &s) {
+HOL_INLINE int64_t inner_bonds(const EliminationPlan &s) {
     return s.n_arms == 0 ? 0 : s.arm[s.n_arms - 1].inner_before + s.arm[s.n_arms - 1].n_bonds - 1;
 }
-HOL_INLINE double *store_of(const Schedule &s, const Arms &arms, int32_t a) {
+HOL_INLINE double *store_of(const EliminationPlan &s, const Arms &arms, int32_t a) {
     return arms.store + arm_store_values(a, s.arm[a].inner_before);
 }
 
 // The same, with what is needed to go through all arms in order, and back.
-HOL_INLINE Cut cut_in_order(const Schedule &s, const Arms &arms, int32_t a) {
-    const Schedule::Arm &arm = s.arm[a];
+HOL_INLINE Cut cut_in_order(const EliminationPlan &s, const Arms &arms, int32_t a) {
+    const EliminationPlan::Arm &arm = s.arm[a];
     Cut cut = cut_of(arm);
     cut.bonds_behind = inner_bonds(s) - arm.inner_before - cut.n_bonds;
     if (a == 0 || s.n_bonds <= bonds_of_cache) return cut;
@@ -48,12 +48,12 @@ HOL_INLINE Cut cut_in_order(const Schedule &s, const Arms &arms, int32_t a) {
 constexpr int64_t doubles_of_line = W > 8 ? W : 8;
 
 // Doubles of all, wherever the memory for them begins.
-HOL_INLINE int64_t arm_values(const Schedule &s) {
+HOL_INLINE int64_t arm_values(const EliminationPlan &s) {
     if (s.n_arms == 0) return 0;
     return doubles_of_line + arm_store_values(s.n_arms, inner_bonds(s)) + scratch_doubles(longest_piece) +
            s.n_arms / static_cast<int64_t>(sizeof(double)) + 1;
 }
-HOL_INLINE Arms take_arms(const Schedule &s, const double *scratch, Memory<double> &memory) {
+HOL_INLINE Arms take_arms(const EliminationPlan &s, const double *scratch, Memory<double> &memory) {
     if (s.n_arms == 0) return {};
     while ((memory.next - scratch) % doubles_of_line != 0) ++memory.next;
     Arms arms = {};

@@ -1,7 +1,7 @@
-// Arms of one large molecule (schedule.hpp), each as a chain inside of it: the inner bonds of its W segments are
-// eliminated at once, without knowing anything else (eliminate/segment.hpp). What a segment leaves to the separators at
-// its two ends is the matrix [c, -f; -f, E] with a = E c - f^2, and T and y on the right: so the joining of
-// verbs/segments.cpp, which subtracts nothing, can go from either end to the other, whichever is the upper one.
+// Arms of one large molecule (elimination_plan.hpp), each as a chain inside of it: the inner bonds of its W segments
+// are eliminated at once, without knowing anything else (eliminate/segment.hpp). What a segment leaves to the
+// separators at its two ends is the matrix [c, -f; -f, E] with a = E c - f^2, and T and y on the right: so the joining
+// of verbs/segments.cpp, which subtracts nothing, can go from either end to the other, whichever is the upper one.
 #pragma once
 
 #include "core/kernels/eliminate/segment.hpp"
@@ -9,7 +9,7 @@
 
 namespace holonomic::HOL_ISA::graph {
 
-HOL_INLINE Lane chain_of(const Schedule::Arm &arm, const MoleculeLane &molecule) {
+HOL_INLINE Lane chain_of(const EliminationPlan::Arm &arm, const MoleculeLane &molecule) {
     Lane lane = {};
     lane.n_bonds = arm.n_bonds - 1;
     lane.first_atom = molecule.first_atom + arm.first_atom;
@@ -27,7 +27,7 @@ HOL_INLINE Summary *summaries_of(const ArmedTree &z, int32_t a) {
 // Calls body(a, arena, tally) for all arms, from the last one on if `backwards`, on the threads that there are.
 template <class Body>
 HOL_INLINE void for_arms(const ArmedTree &z, bool backwards, Tally &tally, const Body &body) {
-    const Schedule &s = z.x.s;
+    const EliminationPlan &s = z.x.s;
     const Arms &arms = z.arms;
     const auto share = [&](int64_t j, double *scratch, Tally &part) {
         const int32_t i = static_cast<int32_t>(backwards ? s.n_shares - 1 - j : j);
@@ -58,7 +58,7 @@ static inline void eliminate_arms(const ArmedTree &z) {
     Tally unused = empty_tally();
     const AtomArray none = {}, &f = x.in.f ? *x.in.f : none;
     for_arms(z, false, unused, [&](int32_t a, const Arena &arena, Tally &) {
-        const Schedule::Arm &arm = x.s.arm[a];
+        const EliminationPlan::Arm &arm = x.s.arm[a];
         const Cut cut = cut_in_order(x.s, z.arms, a);
         const Lane lane = chain_of(arm, x.lane[0]);
         Summary *const all = summaries_of(z, a);
@@ -67,17 +67,17 @@ static inline void eliminate_arms(const ArmedTree &z) {
         for (int64_t j = 0; !alone && j < cut.blocks; ++j) {
             eliminate_block(z.terms, *x.box, cut, lane, j, *x.r, *x.in.v, f, false, reinterpret_cast<double *>(all),
                             arena, x.in.strain);
-            alone = any(all[j].doubt);
+            alone = any(all[j].flag);
         }
         z.arms.alone[a] = alone;
     });
 }
 
 // Goes up an arm: takes E and the right-hand side y, which its lowest bond gets from below, through the segments to the
-// highest bond. Returns false, with nothing changed, if a joint is in doubt.
+// highest bond. Returns false, with nothing changed, if a joint is flagged.
 static inline bool up_segments(const ArmedTree &z, int32_t a) {
     const Molecules<double> &x = z.x;
-    const Schedule::Arm &arm = x.s.arm[a];
+    const EliminationPlan::Arm &arm = x.s.arm[a];
     Summary *const all = summaries_of(z, a);
     BondRow<double> &low = x.row[arm.bottom], &high = x.row[arm.top()];
     const int64_t n = cut_of(arm).blocks * W;
@@ -89,7 +89,7 @@ static inline bool up_segments(const ArmedTree &z, int32_t a) {
         if (arm.ascending && k > 0) y += s.b[i];
         const double below = arm.ascending ? s.c[i] : s.E[i], above = arm.ascending ? s.E[i] : s.c[i];
         const double P = E + below, sum = y + (arm.ascending ? s.T[i] : s.y[i]), S = above * E + s.a[i];
-        if (is_doubtful_join(s, i, S, arm.ascending ? P : S, arm.ascending ? 1.0 : E)) return false;
+        if (is_flagged_join(s, i, S, arm.ascending ? P : S, arm.ascending ? 1.0 : E)) return false;
         s.t[i] = sum / P;
         s.up[i] = s.f[i] / P;
         if (k == 0) {
@@ -108,7 +108,7 @@ static inline bool up_segments(const ArmedTree &z, int32_t a) {
 }
 
 HOL_NOINLINE void up_arm(ArmedTree &z, int32_t a) {
-    const Schedule::Arm &arm = z.x.s.arm[a];
+    const EliminationPlan::Arm &arm = z.x.s.arm[a];
     unsigned char &alone = z.arms.alone[a];
     load_slot(z, arm.top());
     if (!alone && up_segments(z, a)) return;
@@ -120,7 +120,7 @@ HOL_NOINLINE void up_arm(ArmedTree &z, int32_t a) {
 // Goes down an arm and finds the multipliers of its separators.
 HOL_NOINLINE void down_arm(ArmedTree &z, int32_t a, bool look) {
     const Molecules<double> &x = z.x;
-    const Schedule::Arm &arm = x.s.arm[a];
+    const EliminationPlan::Arm &arm = x.s.arm[a];
     if (z.arms.alone[a]) {
         for (int32_t slot = arm.top(); slot > arm.bottom; --slot) down_atom(z, slot, look);
         return;
@@ -141,11 +141,11 @@ HOL_NOINLINE void down_arm(ArmedTree &z, int32_t a, bool look) {
     }
     if (!arm.ascending) all[blocks].t[0] = t;
     x.row[arm.bottom].t = t;
-    if (!good) z.x.slack = -1;
+    if (!good) z.x.margin = -1;
 }
 
 // Of atoms between slots, and of bonds between places.
-HOL_NOINLINE void write_range(const Molecules<double> &x, bool weighted, const Schedule::Stretch &range,
+HOL_NOINLINE void write_range(const Molecules<double> &x, bool weighted, const EliminationPlan::Stretch &range,
                               const Outputs &out, MoleculesVirial<double> &virial) {
     const int32_t first = range.first_place, end = range.end_place;
     if (out.lambda) write_bonds<false>(x, 0.5, out.lambda, 1, first, end);
@@ -160,8 +160,8 @@ HOL_NOINLINE void write_range(const Molecules<double> &x, bool weighted, const S
 }
 
 // The outputs of an arm that was worked on atom by atom.
-HOL_NOINLINE void write_alone(const Molecules<double> &x, bool weighted, const Schedule::Arm &arm, const Outputs &out,
-                              Tally &tally) {
+HOL_NOINLINE void write_alone(const Molecules<double> &x, bool weighted, const EliminationPlan::Arm &arm,
+                              const Outputs &out, Tally &tally) {
     const int32_t first = arm.ascending ? arm.bottom : arm.bottom + 1;
     MoleculesVirial<double> virial;
     write_range(x, weighted, {arm.bottom + 1, arm.top() + 1, first, first + arm.n_bonds - 1, -1}, out, virial);
@@ -173,7 +173,7 @@ HOL_NOINLINE void write_arms(const ArmedTree &z, bool weighted, const Outputs &o
     const Molecules<double> &x = z.x;
     const SegmentOutputs outputs = {{}, false, out.lambda, out.tension, splat(0.5), 1.0, out.virial};
     for_arms(z, true, tally, [&](int32_t a, const Arena &arena, Tally &part) {
-        const Schedule::Arm &arm = x.s.arm[a];
+        const EliminationPlan::Arm &arm = x.s.arm[a];
         if (z.arms.alone[a]) return write_alone(x, weighted, arm, out, part);
         const Cut cut = cut_in_order(x.s, z.arms, a);
         const Lane lane = chain_of(arm, x.lane[0]);

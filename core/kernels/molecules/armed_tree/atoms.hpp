@@ -1,7 +1,7 @@
 // The atoms between the arms of a large tree, one by one: read, eliminated, and what is found of them.
 #pragma once
 
-#include "core/kernels/molecules/armed_tree/armed_tree.hpp"
+#include "core/kernels/molecules/armed_tree/linear.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 
@@ -30,33 +30,33 @@ HOL_INLINE void load_slot(const ArmedTree &z, int32_t slot) {
 }
 
 // In twice the precision. False: that doesn't do either.
-HOL_NOINLINE bool up_carefully(const Molecules<double> &x, int32_t slot, int k) {
+HOL_NOINLINE bool up_extended(const Molecules<double> &x, int32_t slot, int k) {
     const AtomRows<double> rows(x, slot);
-    DoubtfulAtom atom = {};
+    FlaggedfulAtom atom = {};
     atom.k = k;
     atom.w = rows.w();
     for (int a = 0; a <= k; ++a) {
         atom.bond[a] = a < k ? rows.bond(a) : rows.above();
         exact_bond(x, 0, a < k ? rows.child[a] : slot, atom.d[a], atom.low[a]);
     }
-    if (!up_doubtful(atom)) return false;
+    if (!up_flagged(atom)) return false;
     for (int a = 0; a <= k; ++a) (a < k ? rows.bond(a) : rows.above()) = atom.bond[a];
     for (int p = 0; p < k * (k - 1) / 2; ++p) rows.multipliers()[p] = atom.pair[p];
     return true;
 }
 
-// Goes up at one atom, with careful arithmetic where plain arithmetic does not do.
+// Goes up at one atom, with extended arithmetic where plain arithmetic does not do.
 HOL_NOINLINE void up_one(ArmedTree &z, int32_t slot) {
     const Molecules<double> &x = z.x;
-    Faint &faint = z.faint;
-    double &slack = z.x.slack;
+    Cancelling &cancelling = z.cancelling;
+    double &margin = z.x.margin;
     const AtomRows<double> rows(x, slot);
     const int k = x.s.child_start[slot + 1] - x.s.child_start[slot];
-    if (__builtin_expect(faint.holds(slot), 0)) {
-        if (k > 3 || !up_carefully(x, slot, k)) slack = -1;
-        return faint.note_careful(slot);
+    if (__builtin_expect(cancelling.holds(slot), 0)) {
+        if (k > 3 || !up_extended(x, slot, k)) margin = -1;
+        return cancelling.note_extended(slot);
     }
-    if (k > 3) return up_joint<0, false>(rows, k, z.working, slack);
+    if (k > 3) return up_joint<0, false>(rows, k, z.working, margin);
     double before[8], own = 1;
     for (int a = 0; a <= k; ++a) {
         const BondRow<double> &row = a < k ? rows.bond(a) : rows.above();
@@ -70,31 +70,32 @@ HOL_NOINLINE void up_one(ArmedTree &z, int32_t slot) {
         row.E = before[2 * a];
         row.t = before[2 * a + 1];
     }
-    if (!up_carefully(x, slot, k)) slack = -1;
-    faint.note_careful(slot);
+    if (!up_extended(x, slot, k)) margin = -1;
+    cancelling.note_extended(slot);
 }
 
-// Deals with an atom with faint bonds. The first time it notes the atom, to be eliminated carefully the next time. Then
-// products are right, and a result must not be a small difference of what comes up and what comes down.
-HOL_NOINLINE void note_faint(ArmedTree &z, int32_t slot, int k) {
+// Deals with an atom with cancelling bonds. The first time it notes the atom, to be eliminated in extended precision
+// the next time. Then products are right, and a result must not be a small difference of what comes up and what comes
+// down.
+HOL_NOINLINE void note_cancelling(ArmedTree &z, int32_t slot, int k) {
     const Molecules<double> &x = z.x;
-    Faint &faint = z.faint;
-    double &slack = z.x.slack;
+    Cancelling &cancelling = z.cancelling;
+    double &margin = z.x.margin;
     double own = 1;
-    doubt_faint_bonds(x, slot, k, 1, own);
+    flag_cancelling_bonds(x, slot, k, 1, own);
     if (own >= 0) return;
-    if (!faint.again) {
-        if (!faint.note(slot)) slack = -1;
+    if (!cancelling.again) {
+        if (!cancelling.note(slot)) margin = -1;
         return;
     }
-    if (!faint.holds(slot)) slack = -1;
+    if (!cancelling.holds(slot)) margin = -1;
     const double above = x.row[slot].t;
     for (int a = 0; a < k; ++a) {
         const int32_t place = x.s.child[x.s.child_start[slot] + a];
         const BondRow<double> &row = x.row[place];
         const double down = row.l * above, A = (x.w[slot] + x.w[place]) * row.q;
         const double size = abs(row.t) + terms_of(x, place, 0) / A;
-        if (!(abs(row.t - down) + abs(down) <= sqrt(most_cancelled2(x.s.n_bonds)) * size)) slack = -1;
+        if (!(abs(row.t - down) + abs(down) <= sqrt(most_cancelled2(x.s.n_bonds)) * size)) margin = -1;
     }
 }
 
@@ -104,7 +105,7 @@ HOL_INLINE void down_atom(ArmedTree &z, int32_t slot, bool look) {
     double own = 1;
     if (look && k > 1) {
         down_one<double>(x, slot, true, false, nullptr, own);
-        if (__builtin_expect(own < 0, 0)) note_faint(z, slot, k);
+        if (__builtin_expect(own < 0, 0)) note_cancelling(z, slot, k);
     } else {
         down_one<double>(x, slot, false, false, nullptr, own);
     }

@@ -8,22 +8,22 @@ namespace holonomic::HOL_ISA::graph {
 // Goes up, reading on the way. An arm comes behind the stretch that ends at its lowest atom.
 HOL_NOINLINE void up_armed(ArmedTree &z) {
     Molecules<double> &x = z.x;
-    z.faint.n_careful = 0;
-    x.slack = 1;
+    z.cancelling.n_extended = 0;
+    x.margin = 1;
     for (int32_t i = 0; i <= x.s.n_arms; ++i) {
-        const Schedule::Stretch &stretch = x.s.stretch[i];
+        const EliminationPlan::Stretch &stretch = x.s.stretch[i];
         for (int32_t slot = stretch.first; slot < stretch.end; ++slot) {
             load_slot(z, slot);
             if (x.s.child_start[slot + 1] > x.s.child_start[slot]) up_one(z, slot);
         }
         if (stretch.arm >= 0) up_arm(z, stretch.arm);
     }
-    up_joint<1, true>(AtomRows<double>(x, x.s.n_tree), 1, z.working, x.slack);
+    up_joint<1, true>(AtomRows<double>(x, x.s.n_tree), 1, z.working, x.margin);
 }
 
 HOL_NOINLINE void down_armed(ArmedTree &z, bool look) {
     for (int32_t i = z.x.s.n_arms; i >= 0; --i) {
-        const Schedule::Stretch &stretch = z.x.s.stretch[i];
+        const EliminationPlan::Stretch &stretch = z.x.s.stretch[i];
         if (stretch.arm >= 0) down_arm(z, stretch.arm, look);
         for (int32_t slot = stretch.end; slot-- > stretch.first;) down_atom(z, slot, look);
     }
@@ -33,11 +33,11 @@ bool ArmedTree::solve(bool look) {
     for (int32_t slot = x.s.n_tree; slot < x.s.n_atoms; ++slot) x.w[slot] = x.lane[0].w[x.s.atom_of[slot]];
     eliminate_arms(*this);
     bool again;
-    do {  // once more where faint bonds have been found
+    do {  // once more where cancelling bonds have been found
         up_armed(*this);
         down_armed(*this, look);
-        again = faint.n > 0 && !faint.again && x.slack >= 0;
-        faint.again = true;
+        again = cancelling.n > 0 && !cancelling.again && x.margin >= 0;
+        cancelling.again = true;
     } while (again);
     double sum = 0, most = 0, least = 1;  // of reciprocal pivots
     for (int32_t i = 0; i <= x.s.n_arms; ++i)
@@ -46,26 +46,27 @@ bool ArmedTree::solve(bool look) {
             most = max(x.row[k].r, most);
             least = min(x.row[k].r, least);
         }
-    return (x.slack >= 0 || !look) && sum - sum == 0 && ordinary_squares(least, most, most_ordinary_pivot).set;
+    return (x.margin >= 0 || !look) && sum - sum == 0 && ordinary_squares(least, most, most_ordinary_pivot).set;
 }
 
-HOL_NOINLINE bool is_torn(const Molecules<double> &x, int32_t slot) {
+HOL_NOINLINE bool is_overcorrected(const Molecules<double> &x, int32_t slot) {
     double v[3];
     read_row(*x.in.v, x.at.number(0, x.s.atom_of[slot]), v);
-    Torn torn(x.row[slot]);
-    for (int32_t c = x.s.child_start[slot]; c < x.s.child_start[slot + 1]; ++c) torn.add_child(x.row[x.s.child[c]]);
-    return torn.is(x.w[slot], v);
+    Overcorrected overcorrected(x.row[slot]);
+    for (int32_t c = x.s.child_start[slot]; c < x.s.child_start[slot + 1]; ++c)
+        overcorrected.add_child(x.row[x.s.child[c]]);
+    return overcorrected.is(x.w[slot], v);
 }
 
-bool ArmedTree::any_torn() const {
-    if (faint.n_careful <= Faint::most_careful) {
-        for (int32_t i = 0; i < faint.n_careful; ++i)
-            if (is_torn(x, faint.careful[i])) return true;
+bool ArmedTree::any_overcorrected() const {
+    if (cancelling.n_extended <= Cancelling::most_extended) {
+        for (int32_t i = 0; i < cancelling.n_extended; ++i)
+            if (is_overcorrected(x, cancelling.extended[i])) return true;
         return false;
     }
     const auto any_in = [&](int32_t first, int32_t end) {
         for (int32_t slot = first; slot < end; ++slot)
-            if (is_torn(x, slot)) return true;
+            if (is_overcorrected(x, slot)) return true;
         return false;
     };
     for (int32_t i = 0; i <= x.s.n_arms; ++i)

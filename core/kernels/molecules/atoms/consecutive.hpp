@@ -4,7 +4,7 @@
 
 #include "core/kernels/isa/choose.hpp"
 #include "core/kernels/memory/columns.hpp"
-#include "core/kernels/molecules/atoms/atoms.hpp"
+#include "core/kernels/molecules/atoms/layout.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 

@@ -5,7 +5,7 @@
 #pragma once
 
 #include "core/kernels/molecules/atoms/consecutive.hpp"
-#include "core/kernels/molecules/schedule.hpp"
+#include "core/kernels/molecules/elimination_plan.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 

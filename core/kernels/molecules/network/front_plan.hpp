@@ -1,4 +1,4 @@
-// How the unknowns of a network are eliminated directly. Plain data; core/molecules/fronts.hpp makes it.
+// How the unknowns of a network are eliminated directly. Plain data; core/molecules/planned/fronts.hpp makes it.
 #pragma once
 
 #include <stdint.h>
@@ -25,11 +25,11 @@ struct FrontPlan {
         int32_t first_node, end_node;  // in node; none of what is halved
         int32_t first_spoke, end_spoke;
         int32_t half[2];  // fronts, or -1
-        int32_t branch;   // -1: of the trunk
+        int32_t subtree;  // -1: of the separator
     };
-    // A front with all that it is made of, for one thread. What has several branches below it is the *trunk*, whose
+    // A front with all that it is made of, for one thread. What has several subtrees below it is the *separator*, whose
     // fronts come one after the other.
-    struct Branch {
+    struct Subtree {
         int32_t first, end;  // in front
     };
     // An end at a hub. Of two that are a strand's, the second one has what couples them.
@@ -41,9 +41,9 @@ struct FrontPlan {
         bool is_first;         // of the hub
     };
     int32_t n_fronts;  // 0: there are none
-    int32_t n_branches;
+    int32_t n_subtrees;
     const Front *front;  // the halves before the whole
-    const Branch *branch;
+    const Subtree *subtree;
     const int32_t *row;          // unknowns
     const int32_t *to_parent;    // their rows in the front of which this one is a half
     const int32_t *node;         // of leaves

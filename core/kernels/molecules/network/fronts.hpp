@@ -2,16 +2,16 @@
 // Reid, ACM Trans. Math. Softw. 9, 302 (1983)). It is a preconditioner: what rounding does to it, residuals show.
 #pragma once
 
-#include "core/kernels/molecules/list/flat_list.hpp"
 #include "core/kernels/molecules/network/dense.hpp"
-#include "core/kernels/molecules/network/network_plan.hpp"
+#include "core/kernels/molecules/network/plan.hpp"
 #include "core/kernels/molecules/scratch.hpp"
+#include "core/kernels/molecules/sparse_ldl/ldl_plan.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 
 struct Fronts {
-    // Where a front's numbers begin; what it leaves, until it is taken up; and where that is made. What a branch leaves
-    // inside of it stands in the memory of the thread, all other in `waiting`.
+    // Where a front's numbers begin; what it leaves, until it is taken up; and where that is made. What a subtree
+    // leaves inside of it stands in the memory of the thread, all other in `waiting`.
     struct Place {
         int64_t entry, pivot, left, made;
     };
@@ -51,25 +51,25 @@ struct Fronts {
     template <class Add, class Diagonal>
     bool factorize(double least_left, const Add &add, const Diagonal &diagonal) const {
         bool good = true;
-        for_branches([&](const FrontPlan::Branch &b, double *of_thread) {
+        for_subtrees([&](const FrontPlan::Subtree &b, double *of_thread) {
             for (int32_t f = b.first; f < b.end && __atomic_load_n(&good, __ATOMIC_RELAXED); ++f)
                 if (!factorize(f, nullptr, of_thread, least_left, add, diagonal))
                     __atomic_store_n(&good, false, __ATOMIC_RELAXED);
         });
         for (int32_t f = 0; f < s.n_fronts && good; ++f)
-            if (s.front[f].branch < 0) good = factorize(f, team, buffer, least_left, add, diagonal);
+            if (s.front[f].subtree < 0) good = factorize(f, team, buffer, least_left, add, diagonal);
         return good;
     }
     // x: right-hand sides, which become the solution.
     __attribute__((noinline)) void solve(double *x) const {
-        for_branches([&](const FrontPlan::Branch &b, double *of_thread) {
+        for_subtrees([&](const FrontPlan::Subtree &b, double *of_thread) {
             for (int32_t f = b.first; f < b.end; ++f) take_up(f, x, of_thread);
         });
         for (int32_t f = 0; f < s.n_fronts; ++f)
-            if (s.front[f].branch < 0) take_up(f, x, buffer);
+            if (s.front[f].subtree < 0) take_up(f, x, buffer);
         for (int32_t f = s.n_fronts; f-- > 0;)
-            if (s.front[f].branch < 0) take_down(f, x, buffer);
-        for_branches([&](const FrontPlan::Branch &b, double *of_thread) {
+            if (s.front[f].subtree < 0) take_down(f, x, buffer);
+        for_subtrees([&](const FrontPlan::Subtree &b, double *of_thread) {
             for (int32_t f = b.end; f-- > b.first;) take_down(f, x, of_thread);
         });
     }
@@ -86,27 +86,28 @@ private:
     struct Sizes {
         int64_t entries, pivots, waiting, tallest, stack;
     };
-    // Calls each(front, its place). What waits in a branch, and in the trunk, is a stack.
+    // Calls each(front, its place). What waits in a subtree, and in the separator, is a stack.
     template <class Each>
     static Sizes lay_out(const FrontPlan &s, const Each &each) {
         Sizes all = {0, 0, 0, 0, 0};
         const auto square_left = [&](const FrontPlan::Front &f) {
             return static_cast<int64_t>(rest_of(f)) * rest_of(f);
         };
-        for (int32_t b = 0; b <= s.n_branches; ++b) {
-            const bool is_trunk = b == s.n_branches;
-            int64_t top = is_trunk ? all.waiting : 0, &most = is_trunk ? all.waiting : all.stack;
-            for (int32_t f = is_trunk ? 0 : s.branch[b].first; f < (is_trunk ? s.n_fronts : s.branch[b].end); ++f) {
+        for (int32_t b = 0; b <= s.n_subtrees; ++b) {
+            const bool is_separator = b == s.n_subtrees;
+            int64_t top = is_separator ? all.waiting : 0, &most = is_separator ? all.waiting : all.stack;
+            for (int32_t f = is_separator ? 0 : s.subtree[b].first; f < (is_separator ? s.n_fronts : s.subtree[b].end);
+                 ++f) {
                 const FrontPlan::Front &front = s.front[f];
-                if (is_trunk && front.branch >= 0) continue;
+                if (is_separator && front.subtree >= 0) continue;
                 const int64_t own = Dense::filled(front.n_own), height = own + rest_of(front),
                               left = square_left(front);
                 Place p = {all.entries, all.pivots, top, top};
                 for (const int32_t half : front.half)
-                    if (half >= 0 && s.front[half].branch == front.branch) p.left -= square_left(s.front[half]);
+                    if (half >= 0 && s.front[half].subtree == front.subtree) p.left -= square_left(s.front[half]);
                 top = p.left + left;
                 most = p.made + left > most ? p.made + left : most;
-                if (is_last_of_branch(s, f)) {
+                if (is_last_of_subtree(s, f)) {
                     p.left = all.waiting;
                     all.waiting += left;
                 }
@@ -123,28 +124,28 @@ private:
     __attribute__((noinline)) static Sizes sizes(const FrontPlan &s) {
         return lay_out(s, [](int32_t, const Place &) {});
     }
-    static bool is_last_of_branch(const FrontPlan &s, int32_t f) {
-        return s.front[f].branch >= 0 && s.branch[s.front[f].branch].end == f + 1;
+    static bool is_last_of_subtree(const FrontPlan &s, int32_t f) {
+        return s.front[f].subtree >= 0 && s.subtree[s.front[f].subtree].end == f + 1;
     }
     static int32_t n_rows(const FrontPlan &s) {
         const FrontPlan::Front &last = s.front[s.n_fronts - 1];
         return last.first_row + last.n_rows;
     }
-    // Calls body(branch, memory of the thread).
+    // Calls body(subtree, memory of the thread).
     template <class Body>
-    HOL_FORCED void for_branches(const Body &body) const {
-        share_out(s.n_branches > 1 ? team : nullptr, buffer, s.n_branches,
-                  [&](int32_t b, double *of_thread) { body(s.branch[b], of_thread); });
+    HOL_FORCED void for_subtrees(const Body &body) const {
+        share_out(s.n_subtrees > 1 ? team : nullptr, buffer, s.n_subtrees,
+                  [&](int32_t b, double *of_thread) { body(s.subtree[b], of_thread); });
     }
     double *left_by(int32_t f, double *of_thread) const {
-        const bool waits = s.front[f].branch < 0 || is_last_of_branch(s, f);
+        const bool waits = s.front[f].subtree < 0 || is_last_of_subtree(s, f);
         return (waits ? waiting : of_thread + before_stack) + place[f].left;
     }
     Dense dense(int32_t f, double *of_thread) const {
         const FrontPlan::Front &front = s.front[f];
         const int32_t own = Dense::filled(front.n_own);
         const Place &p = place[f];
-        double *const left = (front.branch < 0 ? waiting : of_thread + before_stack) + p.made;
+        double *const left = (front.subtree < 0 ? waiting : of_thread + before_stack) + p.made;
         return {own,  own + rest_of(front), lower + p.entry, upper + p.entry,
                 left, per_pivot + p.pivot,  of_thread,       nullptr};
     }

@@ -20,7 +20,7 @@ struct NetLinear : NetProof {
     __attribute__((noinline)) bool solve() const {
         if (!find()) return false;
         if (!unproven) {
-            if (!doubtful || correct()) return true;
+            if (!flagged || correct()) return true;
             if (!find()) return false;  // once more, as correct() has taken its arrays
         }
         return refine();

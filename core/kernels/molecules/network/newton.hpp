@@ -1,4 +1,4 @@
-// Newton's method for the positions of a network, as flat_newton.hpp has it for molecules along a list.
+// Newton's method for the positions of a network, as flat_newton.hpp has it for molecules by sparse LDL^T.
 #pragma once
 
 #include "core/kernels/molecules/iterate.hpp"

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "core/kernels/arithmetic/width.hpp"
-#include "core/kernels/molecules/list/flat_list.hpp"
 #include "core/kernels/molecules/scratch.hpp"
+#include "core/kernels/molecules/sparse_ldl/ldl_plan.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 

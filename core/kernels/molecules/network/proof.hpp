@@ -14,27 +14,27 @@ struct NetProof : NetEquations {
     static constexpr double any_part = 1e100, next_part = 1e-6;
     static constexpr int32_t places_of_look = 8;  // so many for each equation that is looked at
 
-    double *enough;     // room for equations in doubt, for their corrections, and then for what refinement may leave
-    double *tension;    // of the rest, by site, sum of |t| |d|
-    int32_t *n_doubts;  // [n_shares + 1] of parts
+    double *enough;    // room for equations flagged, for their corrections, and then for what refinement may leave
+    double *tension;   // of the rest, by site, sum of |t| |d|
+    int32_t *n_flags;  // [n_shares + 1] of parts
     NetFactor factor;
     mutable int64_t rounds = 0;  // that the unknowns have taken so far
     mutable bool unproven = false,
-                 doubtful = false;  // of some part; after the first, what others leave is not looked for
+                 flagged = false;  // of some part; after the first, what others leave is not looked for
 
-    // An equation in doubt: what is left of it, at first with what rounding may hide there; of its two atoms, what
+    // An equation flagged: what is left of it, at first with what rounding may hide there; of its two atoms, what
     // bonds do to them, times the bond; the sum of T times inverse masses.
-    struct Doubt {
+    struct Flagged {
         double left, at_from, at_to, tensions;
         int32_t place;
     };
     // Those of a part; lost: where there are more than `most`.
-    struct Doubts {
-        Doubt *const first;
+    struct Flaggeds {
+        Flagged *const first;
         const int32_t most;
         int32_t n;
         bool lost;
-        void note(const Doubt &one) {
+        void note(const Flagged &one) {
             lost = lost || n == most;
             if (!lost) first[n++] = one;
         }
@@ -75,7 +75,7 @@ struct NetProof : NetEquations {
              const AtomArray &positions, const Inputs &inputs, int sides, Memory<double> &memory)
         : NetEquations(plan, l, packed, team, b, positions, inputs, sides, memory),
           enough(memory.values(in_fours(s.n_bonds))), tension(memory.values(in_fours(n_rest(s))) - s.first_node),
-          n_doubts(reinterpret_cast<int32_t *>(memory.values(in_fours(s.n_shares / 2 + 1)))),
+          n_flags(reinterpret_cast<int32_t *>(memory.values(in_fours(s.n_shares / 2 + 1)))),
           factor(net, d, true, memory) {}
 
     // Strands need what has been found for the rest. One part of them after the other goes through all that it needs,
@@ -139,21 +139,21 @@ struct NetProof : NetEquations {
     // proven, in twice the precision.
     template <class After>
     HOL_FORCED void prove_all(double *multipliers, double most, bool look, const After &after) const {
-        const auto note = [&](const NetPart &part, const Doubts &doubts) {
-            n_doubts[part.share] = doubts.n;
-            if (doubts.n > 0) __atomic_store_n(&doubtful, true, __ATOMIC_RELAXED);
-            if (doubts.lost) __atomic_store_n(&unproven, true, __ATOMIC_RELAXED);
+        const auto note = [&](const NetPart &part, const Flaggeds &flags) {
+            n_flags[part.share] = flags.n;
+            if (flags.n > 0) __atomic_store_n(&flagged, true, __ATOMIC_RELAXED);
+            if (flags.lost) __atomic_store_n(&unproven, true, __ATOMIC_RELAXED);
         };
         factor.find_pulls_of_rest(multipliers, G, tension, low());
         const NetPart rest = net.rest();
-        Doubts doubts = doubts_of(rest, look);
-        prove_trees(most, doubts);
-        look_at(doubts);
-        note(rest, doubts);
+        Flaggeds flags = flags_of(rest, look);
+        prove_trees(most, flags);
+        look_at(flags);
+        note(rest, flags);
         after(rest);
         net.for_parts([&](const NetPart &part) {
             factor.take_down(part, multipliers);
-            Doubts own = doubts_of(part, look);
+            Flaggeds own = flags_of(part, look);
             if (!__atomic_load_n(&unproven, __ATOMIC_RELAXED)) {
                 prove(part, multipliers, most, own);
                 look_at(own);
@@ -162,13 +162,13 @@ struct NetProof : NetEquations {
             after(part);
         });
     }
-    // Solves for what is left of equations in doubt alone. False if that is not proven to leave the others as they are.
+    // Solves for what is left of equations flagged alone. False if that is not proven to leave the others as they are.
     __attribute__((noinline)) bool correct() const {
         double *const change = enough;
         const auto begin = [&](const NetPart &part) {
             for (int32_t k = part.first_place; k < part.end_place; ++k) side[k] = 0;
-            const Doubt *const doubt = doubts_of(part, false).first;
-            for (int32_t i = 0; i < n_doubts[part.share]; ++i) side[doubt[i].place] = doubt[i].left;
+            const Flagged *const flag = flags_of(part, false).first;
+            for (int32_t i = 0; i < n_flags[part.share]; ++i) side[flag[i].place] = flag[i].left;
             for (int32_t k = part.first_place; k < part.end_place; ++k) change[k] = side[k];
         };
         begin(net.rest());
@@ -197,14 +197,14 @@ private:
         Memory<double> memory = {reinterpret_cast<double *>(a)};
         return Net3::take(memory, n_rest(s), s.first_node);
     }
-    Doubts doubts_of(const NetPart &part, bool look) const {
-        return {reinterpret_cast<Doubt *>(enough + part.first_place),
+    Flaggeds flags_of(const NetPart &part, bool look) const {
+        return {reinterpret_cast<Flagged *>(enough + part.first_place),
                 look ? (part.end_place - part.first_place) / places_of_look : 0, 0, false};
     }
     // Of one equation, or of W: terms are S and what the atoms' accelerations are multiplied by; of these, what the
     // bonds do is no more than S greater.
     template <class V>
-    HOL_FORCED void prove(int32_t place, const Atom<V> &from, const Atom<V> &to, double most, Doubts &doubts) const {
+    HOL_FORCED void prove(int32_t place, const Atom<V> &from, const Atom<V> &to, double most, Flaggeds &flags) const {
         net.fetch_ahead(place, side, size_of_side);
         const Vector3<V> bond = d.get<V>(place), x = from.w * from.pull, y = to.w * to.pull;
         const V at_x = dot(bond, x), at_y = dot(bond, y), tensions = mul_add(from.w, from.T, to.w * to.T),
@@ -219,16 +219,16 @@ private:
             if (!(bits(bad) >> i & 1)) continue;
             __builtin_prefetch(s.from + place + i);
             __builtin_prefetch(s.to + place + i);
-            doubts.note({of_lane(left, i), of_lane(at_x, i), of_lane(at_y, i), of_lane(tensions, i), place + i});
+            flags.note({of_lane(left, i), of_lane(at_x, i), of_lane(at_y, i), of_lane(tensions, i), place + i});
         }
     }
-    __attribute__((noinline)) void prove_trees(double most, Doubts &doubts) const {
+    __attribute__((noinline)) void prove_trees(double most, Flaggeds &flags) const {
         const auto atom = [&](int32_t i) { return Atom<double>{net.w[i], tension[i], G.get<double>(i)}; };
         for (int32_t k = s.first_tree_place; k < s.n_bonds; ++k)
-            prove<double>(k, atom(s.from[k]), atom(s.to[k]), most, doubts);
+            prove<double>(k, atom(s.from[k]), atom(s.to[k]), most, flags);
     }
     __attribute__((noinline)) void prove(const NetPart &part, const double *multipliers, double most,
-                                         Doubts &doubts) const {
+                                         Flaggeds &flags) const {
         net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED {
             typedef decltype(width) V;
             const auto at_node = [&](int end) HOL_FORCED {
@@ -247,16 +247,16 @@ private:
                 },
                 [&]() HOL_FORCED { return at_node(1); },
                 [&](int32_t place, const Atom<V> &from, const Atom<V> &to)
-                    HOL_FORCED { prove<V>(place, from, to, most, doubts); });
+                    HOL_FORCED { prove<V>(place, from, to, most, flags); });
         });
     }
     // Keeps those that are left with too much. What they need is all over memory, so it is fetched for all of them
     // first.
-    __attribute__((noinline)) void look_at(Doubts &doubts) const {
-        const int32_t n = doubts.lost ? 0 : doubts.n;
-        doubts.n = 0;
+    __attribute__((noinline)) void look_at(Flaggeds &flags) const {
+        const int32_t n = flags.lost ? 0 : flags.n;
+        flags.n = 0;
         const auto for_ends = [&](const auto &each) {
-            for (int32_t i = 0; i < n; ++i) each(s.from[doubts.first[i].place]), each(s.to[doubts.first[i].place]);
+            for (int32_t i = 0; i < n; ++i) each(s.from[flags.first[i].place]), each(s.to[flags.first[i].place]);
         };
         for_ends([&](int32_t site) { __builtin_prefetch(s.atom_of + site); });
         for_ends([&](int32_t site) {
@@ -264,22 +264,22 @@ private:
             if (has(pulls)) net.fetch(*in.f, site);
             if (has(squares)) net.fetch(*in.v, site);
         });
-        for (int32_t i = 0; i < n && !doubts.lost; ++i) look_at(doubts.first[i], doubts);
+        for (int32_t i = 0; i < n && !flags.lost; ++i) look_at(flags.first[i], flags);
     }
     // With all terms of the equation, the accelerations of its two atoms too; then in twice the precision, from
     // unrounded bonds.
-    void look_at(const Doubt &doubt, Doubts &doubts) const {
-        const int32_t k = doubt.place, i = s.from[k], j = s.to[k];
+    void look_at(const Flagged &flag, Flaggeds &flags) const {
+        const int32_t k = flag.place, i = s.from[k], j = s.to[k];
         const Vector3<double> rounded_bond = d.get<double>(k);
-        const double terms_of_all = size_of_side[k] + abs(doubt.at_from + dot(rounded_bond, input_of(i))) +
-                                    abs(doubt.at_to + dot(rounded_bond, input_of(j))),
+        const double terms_of_all = size_of_side[k] + abs(flag.at_from + dot(rounded_bond, input_of(i))) +
+                                    abs(flag.at_to + dot(rounded_bond, input_of(j))),
                      may_be_left = most_left() * terms_of_all,
-                     rounding = 16 * (epsilon * epsilon) * hidden_by_rounding(rounded_bond, doubt.tensions);
-        if (doubt.left <= may_be_left) return;
+                     rounding = 16 * (epsilon * epsilon) * hidden_by_rounding(rounded_bond, flag.tensions);
+        if (flag.left <= may_be_left) return;
         const double left = residual_of(k, exact(k), acceleration_of(i, t), acceleration_of(j, t));
         if (abs(left) + rounding <= may_be_left) return;
-        doubts.lost = !(abs(left) < 1e300 && rounding <= may_be_left);
-        doubts.note({left, 0, 0, 0, k});
+        flags.lost = !(abs(left) < 1e300 && rounding <= may_be_left);
+        flags.note({left, 0, 0, 0, k});
     }
 };
 

@@ -1,9 +1,9 @@
 // The caller's arrays per atom, read and written by the sites of a network.
 #pragma once
 
-#include "core/kernels/molecules/atoms/atoms.hpp"
-#include "core/kernels/molecules/network/network_plan.hpp"
+#include "core/kernels/molecules/atoms/layout.hpp"
 #include "core/kernels/molecules/network/parts.hpp"
+#include "core/kernels/molecules/network/plan.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 

@@ -2,9 +2,9 @@
 // difference that is divided by what it offers. In twice the precision enough of it is left.
 #pragma once
 
-#include "core/kernels/molecules/list/flat_list.hpp"
 #include "core/kernels/molecules/network/tensor.hpp"
 #include "core/kernels/molecules/scratch.hpp"
+#include "core/kernels/molecules/sparse_ldl/ldl_plan.hpp"
 #include "core/kernels/molecules/twice.hpp"
 
 namespace holonomic::HOL_ISA::graph {

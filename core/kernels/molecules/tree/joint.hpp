@@ -4,7 +4,7 @@
 //     S u = y,   S l = w D^T d_e,   y_e = b_e + l.y,   E_e = w (q_e - w d_e^T D S^-1 D^T d_e),   t_c = u_c + l_c t_e.
 //
 // S = L P L^T is decomposed as it stands, which subtracts. Errors stay at a few roundings while every pivot and every E
-// keep a sixteenth of what they are subtracted from. `slack` is negative where they don't.
+// keep a sixteenth of what they are subtracted from. `margin` is negative where they don't.
 #pragma once
 
 #include "core/kernels/arithmetic/thresholds.hpp"
@@ -17,7 +17,7 @@ constexpr int pair_of(int a, int b) { return a * (a - 1) / 2 + b; }  // a > b
 
 // Finds multipliers m and reciprocal pivots r of S. S is k (k + 1) / 2 values of working memory, row after row.
 template <class Rows, class V>
-HOL_INLINE void decompose(const Rows &x, int k, V w, V *S, V *r, V *m, V &slack) {
+HOL_INLINE void decompose(const Rows &x, int k, V w, V *S, V *r, V *m, V &margin) {
     HOL_UNROLL_FEW
     for (int a = 0; a < k; ++a) {
         const BondRow<V> &row = x.bond(a);
@@ -31,7 +31,7 @@ HOL_INLINE void decompose(const Rows &x, int k, V w, V *S, V *r, V *m, V &slack)
         if (j > 0) {
             const BondRow<V> &row = x.bond(j);
             const V whole = mul_add(w, row.q, row.E);
-            slack = min(mul_add(Width<V>::all(-least_part), whole, P), slack);
+            margin = min(mul_add(Width<V>::all(-least_part), whole, P), margin);
         }
         r[j] = Width<V>::all(1) / P;
         HOL_UNROLL_FEW
@@ -87,12 +87,12 @@ struct JointMemory<V, 0> {
 // Eliminates the k children of an atom towards the bond above it (top: there is none). Right-hand sides are in t of the
 // rows. Multipliers and pivots are kept for another right-hand side.
 template <int known, bool top, class V, class Rows>
-HOL_INLINE void up_joint(const Rows &x, int count, Memory<V> memory, V &slack) {
+HOL_INLINE void up_joint(const Rows &x, int count, Memory<V> memory, V &margin) {
     const int k = known > 0 ? known : count;
-    if (!top && k > most_decomposed) return up_many(x, k, least_part, slack);
+    if (!top && k > most_decomposed) return up_many(x, k, least_part, margin);
     auto f = JointMemory<V, known>::make(memory, k);
     const V w = x.w();
-    decompose(x, k, w, f.S, f.r, f.m, slack);
+    decompose(x, k, w, f.S, f.r, f.m, margin);
     V *const m = x.multipliers();
     HOL_UNROLL_FEW
     for (int a = 0; a < k; ++a) {
@@ -113,7 +113,7 @@ HOL_INLINE void up_joint(const Rows &x, int count, Memory<V> memory, V &slack) {
             y = mul_add(f.l[a], x.bond(a).t, y);
             x.bond(a).l = f.l[a];
         }
-        slack = min(mul_add(Width<V>::all(-least_part), whole, E), slack);
+        margin = min(mul_add(Width<V>::all(-least_part), whole, E), margin);
         e.E = E;
         e.t = y;
     }
@@ -155,21 +155,21 @@ HOL_INLINE void substitute_joint(const Rows &x, int count, Memory<V> memory) {
 // loaded.
 template <class V>
 static inline void up_trees(Molecules<V> &x, Memory<V> memory) {
-    V slack = x.slack;  // in a register
-    const Schedule &s = x.s;
+    V margin = x.margin;  // in a register
+    const EliminationPlan &s = x.s;
     for (int32_t slot = 0; slot < s.n_tree; ++slot) {
         const int k = s.child_start[slot + 1] - s.child_start[slot];
         if (k == 0) continue;
         const Molecules<V> *const molecules = &x;
-        slack =
-            choose_mostly<3>(k, [=](auto known) HOL_FORCED {  // captures by value, so that slack stays in a register
-                V least = slack;
+        margin = choose_mostly<3>(
+            k, [=](auto known) HOL_FORCED {  // captures by value, so that pivot margin stays in a register
+                V least = margin;
                 up_joint<known, false>(AtomRows<V, known>(*molecules, slot), k, memory, least);
                 return least;
             });
     }
-    if (s.type == Schedule::tree) up_joint<1, true>(AtomRows<V, 1>(x, s.n_tree), 1, memory, slack);
-    x.slack = slack;
+    if (s.type == EliminationPlan::tree) up_joint<1, true>(AtomRows<V, 1>(x, s.n_tree), 1, memory, margin);
+    x.margin = margin;
 }
 
 // Calls before(slot) at each atom, which may make the right-hand side of the bond above it.
@@ -184,14 +184,14 @@ HOL_INLINE void substitute_trees(const Molecules<V> &x, Memory<V> memory, const 
                 substitute_joint<known, false, look>(AtomRows<V, known>(*molecules, slot), k, memory);
             });
     }
-    if (x.s.type == Schedule::tree) substitute_joint<1, true, look>(AtomRows<V, 1>(x, x.s.n_tree), 1, memory);
+    if (x.s.type == EliminationPlan::tree) substitute_joint<1, true, look>(AtomRows<V, 1>(x, x.s.n_tree), 1, memory);
 }
 
 // Goes down at one atom: u of its children becomes t, from t of the bond above. `look`: tests the result. pulled: adds
 // to pull[slot], which has t d of the bond above, what the children pull, and begins theirs.
 template <int known, class V>
 HOL_INLINE void down_joint(const Molecules<V> &x, int32_t slot, int count, bool look, bool pulled, Vector3<V> *pull,
-                           V &slack) {
+                           V &margin) {
     const int k = known > 0 ? known : count;
     const AtomRows<V, known> rows(x, slot);
     const V above = x.row[slot].t;
@@ -207,29 +207,29 @@ HOL_INLINE void down_joint(const Molecules<V> &x, int32_t slot, int count, bool 
     }
     if (pulled) put(pull[slot], sum);
     if (!look || k == 1) return;
-    const MaskOf<V> faint = faint_bonds<V>(rows, k);
-    if (__builtin_expect(any(faint), 0)) doubt_faint_bonds(x, slot, k, bits(faint), slack);
+    const MaskOf<V> cancelling = cancelling_bonds<V>(rows, k);
+    if (__builtin_expect(any(cancelling), 0)) flag_cancelling_bonds(x, slot, k, bits(cancelling), margin);
 }
 template <class V>
 HOL_NOINLINE void down_many_joint(const Molecules<V> &x, int32_t slot, int k, bool look, bool pulled, Vector3<V> *pull,
-                                  V &slack) {
-    down_joint<0>(x, slot, k, look, pulled, pull, slack);
+                                  V &margin) {
+    down_joint<0>(x, slot, k, look, pulled, pull, margin);
 }
 template <class V>
-HOL_INLINE void down_one(const Molecules<V> &x, int32_t slot, bool look, bool pulled, Vector3<V> *pull, V &slack) {
+HOL_INLINE void down_one(const Molecules<V> &x, int32_t slot, bool look, bool pulled, Vector3<V> *pull, V &margin) {
     const int k = x.s.child_start[slot + 1] - x.s.child_start[slot];
-    if (k > 3) return down_many_joint(x, slot, k, look, pulled, pull, slack);
-    if (k == 1) down_joint<1>(x, slot, k, look, pulled, pull, slack);
-    if (k == 2) down_joint<2>(x, slot, k, look, pulled, pull, slack);
-    if (k == 3) down_joint<3>(x, slot, k, look, pulled, pull, slack);
+    if (k > 3) return down_many_joint(x, slot, k, look, pulled, pull, margin);
+    if (k == 1) down_joint<1>(x, slot, k, look, pulled, pull, margin);
+    if (k == 2) down_joint<2>(x, slot, k, look, pulled, pull, margin);
+    if (k == 3) down_joint<3>(x, slot, k, look, pulled, pull, margin);
 }
 
 // Goes down the trees.
 template <bool look, class V>
 static inline void down_trees(Molecules<V> &x, Vector3<V> *pull) {
-    V slack = x.slack;
-    for (int32_t slot = x.s.n_tree - 1; slot >= 0; --slot) down_one(x, slot, look, true, pull, slack);
-    x.slack = slack;
+    V margin = x.margin;
+    for (int32_t slot = x.s.n_tree - 1; slot >= 0; --slot) down_one(x, slot, look, true, pull, margin);
+    x.margin = margin;
 }
 
 }  // namespace holonomic::HOL_ISA::graph

@@ -5,7 +5,7 @@
 //     l_c = w d_c^T N d_e / E_c,   u_c = (y_c - d_c.a) / E_c,   a = w N sum_c d_c y_c / E_c
 //
 // It does where M is well conditioned, and where no child is held by the atom alone: where of each d_c^T (w N / E_c)
-// d_c, which S^-1 subtracts from 1, enough is missing. `slack` is negative where it does not.
+// d_c, which S^-1 subtracts from 1, enough is missing. `margin` is negative where it does not.
 #pragma once
 
 #include "core/kernels/arithmetic/thresholds.hpp"
@@ -49,7 +49,7 @@ HOL_INLINE Matrix3<V> kept_matrix(const V *kept) {
 
 // What up_joint() does.
 template <class V, class Rows>
-HOL_INLINE void up_many(const Rows &x, int k, double least_part, V &slack) {
+HOL_INLINE void up_many(const Rows &x, int k, double least_part, V &margin) {
     const V w = x.w(), one = Width<V>::all(1);
     Matrix3<V> M = Matrix3<V>::one();
     Vector3<V> sum = {};
@@ -67,8 +67,9 @@ HOL_INLINE void up_many(const Rows &x, int k, double least_part, V &slack) {
     const V part[6] = {whole.x.x, whole.x.y, whole.x.z, whole.y.y, whole.y.z, whole.z.z};
     for (int i = 0; i < 6; ++i) kept[i] = part[i];
     const Matrix3<V> B = kept_matrix(kept);
-    const V size = B.trace(), uneven = M.trace() * (size / w), bound = size * (uneven * Width<V>::all(1 / even));
-    V least = min(Width<V>::all(most_uneven) - uneven, uneven - Width<V>::all(even - 1));
+    const V size = B.trace(), uneven = M.trace() * (size / w),
+            bound = size * (uneven * Width<V>::all(1 / least_uneven));
+    V least = min(Width<V>::all(most_uneven) - uneven, uneven - Width<V>::all(least_uneven - 1));
     kept[of_pulls] = pulls2;
     kept[of_rounding] = bound * bound;
 
@@ -84,7 +85,7 @@ HOL_INLINE void up_many(const Rows &x, int k, double least_part, V &slack) {
         row.E = row.t * (row.r * left);  // what siblings.hpp compares with
         row.t = row.r * (row.t - dot(row.d, a0));
     }
-    slack = min(least, slack);
+    margin = min(least, margin);
     e.E = dot(e.d, along);
     e.t = y;
 }

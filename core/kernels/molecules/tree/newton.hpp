@@ -4,7 +4,7 @@
 #pragma once
 
 #include "core/kernels/molecules/atoms/vectors.hpp"
-#include "core/kernels/molecules/ring/ring_trees_newton.hpp"
+#include "core/kernels/molecules/ring/newton_with_trees.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 
@@ -20,16 +20,16 @@ struct Newton {
 
     static constexpr int64_t row_values = static_cast<int64_t>(sizeof(NewtonRow<V>) / sizeof(V));
     // Values of factors that a ring has beside those of its bonds.
-    static int64_t of_ring(const Schedule &s) {
+    static int64_t of_ring(const EliminationPlan &s) {
         return s.n_core > 0 ? 2 * static_cast<int64_t>(s.n_core) + 4 * static_cast<int64_t>(s.n_tree) : 0;
     }
-    static int64_t values(const Schedule &s) {
+    static int64_t values(const EliminationPlan &s) {
         const int64_t n_atoms = s.n_atoms, n_bonds = s.n_bonds;
         return 11 * n_atoms + 2 + (row_values + 6) * n_bonds + 4 * static_cast<int64_t>(s.n_pairs) + 2 * of_ring(s) +
                NewtonMemory<V, 0>::values(s.max_joint);
     }
 
-    Newton(const Schedule &s, Memory<V> &memory)
+    Newton(const EliminationPlan &s, Memory<V> &memory)
         : x{s, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, memory}, kept(), lengths(memory.values(2)), opening() {
         x.w = memory.values(s.n_atoms);
         x.row = reinterpret_cast<NewtonRow<V> *>(memory.values(row_values * s.n_bonds));
@@ -105,7 +105,7 @@ struct Newton {
     // Calls body(value) for all values that factors are made of.
     template <class Body>
     HOL_FORCED void for_factors(const Body &body) const {
-        const Schedule &s = x.s;
+        const EliminationPlan &s = x.s;
         for (int32_t k = 0; k < s.n_bonds; ++k) {
             body(x.row[k].r);
             body(x.row[k].up);
@@ -119,7 +119,7 @@ struct Newton {
     }
 
     __attribute__((noinline)) void make_factors() const {
-        const Schedule &s = x.s;
+        const EliminationPlan &s = x.s;
         for (int32_t slot = 0; slot < s.n_tree; ++slot) {
             const int k = s.child_start[slot + 1] - s.child_start[slot];
             if (k == 0)
@@ -146,7 +146,7 @@ struct Newton {
     // the way, for bonds as tau moves them; returns the largest error.
     template <bool measured>
     __attribute__((noinline)) V go_up() {
-        const Schedule &s = x.s;
+        const EliminationPlan &s = x.s;
         Errors errors = {};
         const PulledAtom<V> *const atom = x.atom, *own = atom;
         NewtonRow<V> *row = x.row;
@@ -180,8 +180,8 @@ struct Newton {
     // Goes down, bond by bond: corrected: through the trees, with the corrections in t, which are added to tau.
     template <bool corrected>
     __attribute__((noinline)) void go_down(MaskOf<V> active) {
-        const Schedule &s = x.s;
-        if (s.type == Schedule::ring) {
+        const EliminationPlan &s = x.s;
+        if (s.type == EliminationPlan::ring) {
             const auto of_bond = [&](int32_t place) HOL_FORCED { return x.row[place].tau * x.row[place].b; };
             Vector3<V> before = of_bond(s.n_bonds - 1);
             for (int32_t slot = s.n_tree; slot < s.n_atoms; ++slot) {

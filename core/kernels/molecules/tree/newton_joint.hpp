@@ -49,7 +49,7 @@ struct PulledAtom {
 
 template <class V>
 struct NewtonSystem {
-    const Schedule &s;
+    const EliminationPlan &s;
     V *w;  // [n_atoms] by slot
     NewtonRow<V> *row;
     V *lower, *upper;            // [n_pairs] each
@@ -105,7 +105,7 @@ struct NewtonMemory<V, 0> {
 
 // An atom at the position level: its bonds at their places, those to its children, and the one above. known: how many
 // children it has, where the compiler knows it. In lanes their slots follow each other; one molecule may be larger.
-// forest/forest_newton.hpp has the same for atoms of W different trees.
+// tree_batch/newton.hpp has the same for atoms of W different trees.
 template <class V, int known = 0>
 struct NewtonAtom {
     const NewtonSystem<V> &x;

@@ -8,7 +8,8 @@
 //   - |t_c|;
 //   - |y_c| r_c, as c and the bonds below it are pulled by y_c, and r_c <= (A^-1)_cc;
 //   - S_c / A_cc, where S_c are the terms of its right-hand side in absolute values.
-// A bond is `faint` if none of these is large enough. The first two are always looked at, the third if they don't do.
+// A bond is `cancelling` if none of these is large enough. The first two are always looked at, the third if they don't
+// do.
 #pragma once
 
 #include "core/kernels/molecules/tree/many.hpp"
@@ -17,7 +18,7 @@ namespace holonomic::HOL_ISA::graph {
 
 // The bonds of an atom, each at its place: those to its children, and the one above. known: as in NewtonAtom, not for
 // atoms of a core.
-// forest/forest_sweeps.hpp has the same for atoms in lanes.
+// tree_batch/sweeps.hpp has the same for atoms in lanes.
 template <class V, int known = 0>
 struct AtomRows {
     const Molecules<V> &x;
@@ -53,16 +54,16 @@ HOL_INLINE V shared_error(const Rows &x, int k) {
     return (w * w) * (x.x.per_cancelled2 * T2);
 }
 
-// Returns a bond's own size less the error, in squares. It is negative if the bond is faint.
+// Returns a bond's own size less the error, in squares. It is negative if the bond is cancelling.
 template <class V>
 HOL_INLINE V left_of(const BondRow<V> &row, const V &shared) {
     return mul_add(-shared, row.q * (row.r * row.r), mul_add(row.t, row.t, row.E * row.E));
 }
 
-// Returns the lanes in which a bond at this atom is faint, the one above it or one of its k children. E of the rows is
-// y r.
+// Returns the lanes in which a bond at this atom is cancelling, the one above it or one of its k children. E of the
+// rows is y r.
 template <class V, class Rows>
-HOL_INLINE MaskOf<V> faint_bonds(const Rows &x, int k) {
+HOL_INLINE MaskOf<V> cancelling_bonds(const Rows &x, int k) {
     const V shared = shared_error<V>(x, k);
     V least = left_of(x.above(), shared);
     HOL_UNROLL_FEW
@@ -100,9 +101,10 @@ double terms_of(const Molecules<V> &x, int32_t place, int lane) {
     return terms_of(x.in, d, number, w);
 }
 
-// Looks again at a bond in the lanes of `which`. Slack becomes negative where it is faint all the same.
+// Looks again at a bond in the lanes of `which`. Slack becomes negative where it is cancelling all the same.
 template <class V>
-HOL_NOINLINE void doubt_faint_bond(const Molecules<V> &x, int32_t place, const V &shared, unsigned which, V &slack) {
+HOL_NOINLINE void flag_cancelling_bond(const Molecules<V> &x, int32_t place, const V &shared, unsigned which,
+                                       V &margin) {
     const V left = left_of(x.row[place], shared);
     int32_t from, to;
     ends_of(x.s, place, from, to);
@@ -110,15 +112,15 @@ HOL_NOINLINE void doubt_faint_bond(const Molecules<V> &x, int32_t place, const V
     for (unsigned rest = which & bits(less(left, V{})); rest; rest &= rest - 1) {
         const int i = __builtin_ctz(rest);
         const double own = terms_of(x, place, i) / Width<V>::get(A, i);
-        if (!(Width<V>::get(left, i) + own * own >= 0)) Width<V>::set(slack, i, -1);
+        if (!(Width<V>::get(left, i) + own * own >= 0)) Width<V>::set(margin, i, -1);
     }
 }
 // The same for all bonds of an atom of a tree.
 template <class V>
-HOL_NOINLINE void doubt_faint_bonds(const Molecules<V> &x, int32_t slot, int k, unsigned which, V &slack) {
+HOL_NOINLINE void flag_cancelling_bonds(const Molecules<V> &x, int32_t slot, int k, unsigned which, V &margin) {
     const int32_t *const child = x.s.child + x.s.child_start[slot];
     const V shared = shared_error<V>(AtomRows<V>(x, slot), k);
-    for (int a = -1; a < k; ++a) doubt_faint_bond(x, a < 0 ? slot : child[a], shared, which, slack);
+    for (int a = -1; a < k; ++a) flag_cancelling_bond(x, a < 0 ? slot : child[a], shared, which, margin);
 }
 
 }  // namespace holonomic::HOL_ISA::graph

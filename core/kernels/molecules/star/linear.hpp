@@ -1,0 +1,201 @@
+// Forces and velocities of stars of three bonds, CH3 and NH3, in registers: the equations of joint.hpp with the centre
+// as the root and S^-1 in closed form. Lanes for which that is not good enough go the general way.
+#pragma once
+
+#include "core/kernels/molecules/star/atoms.hpp"
+#include "core/kernels/molecules/store.hpp"
+#include "core/kernels/molecules/tree/joint.hpp"
+
+namespace holonomic::HOL_ISA::graph {
+
+// Bond vectors from the centre, and S = diag(w_k q_k) + w_0 D^T D with its inverse adj / det.
+template <class V>
+struct Star {
+    const StarMasses<3, V> &m;
+    Vector3<V> d[3];
+    V q[3], adj[3][3], r;  // r = 1 / det
+    V margin;              // negative where too little was left of what was subtracted from
+
+    inline HOL_FORCED Star(const StarMasses<3, V> &masses) : m(masses) {}
+
+    // From d.
+    inline HOL_FORCED void invert() {
+        V S[3][3];
+        HOL_UNROLL
+        for (int k = 0; k < 3; ++k) {
+            q[k] = dot(d[k], d[k]);
+            HOL_UNROLL
+            for (int l = 0; l < k; ++l) S[k][l] = S[l][k] = m.w[0] * dot(d[k], d[l]);
+            S[k][k] = (m.w[0] + m.w[k + 1]) * q[k];
+        }
+        HOL_UNROLL
+        for (int k = 0; k < 3; ++k) {
+            const int a = (k + 1) % 3, b = (k + 2) % 3;
+            const V whole = S[a][a] * S[b][b];
+            adj[k][k] = mul_add(-S[a][b], S[a][b], whole);
+            adj[a][b] = adj[b][a] = mul_add(S[k][a], S[k][b], -(S[k][k] * S[a][b]));
+            const V left = mul_add(Width<V>::all(-least_part), whole, adj[k][k]);
+            margin = k == 0 ? left : min(left, margin);
+        }
+        const V whole = S[0][0] * adj[0][0], det = mul_add(S[0][2], adj[0][2], mul_add(S[0][1], adj[0][1], whole));
+        margin = min(mul_add(Width<V>::all(-least_part), whole, det), margin);
+        r = Width<V>::all(1) / det;
+    }
+    inline HOL_FORCED void solve(const V *y, V *t) const {
+        HOL_UNROLL
+        for (int k = 0; k < 3; ++k) t[k] = r * mul_add(adj[k][2], y[2], mul_add(adj[k][1], y[1], adj[k][0] * y[0]));
+    }
+
+    // The lanes in which t of y is good: nothing was lost, and no multiplier is a small difference of large terms, as
+    // siblings.hpp has it, with (S^-1)_kk for the reciprocal pivot.
+    inline HOL_FORCED MaskOf<V> good(const V *y, const V *t) const {
+        V T2 = q[0] * (t[0] * t[0]), least = margin, sum = t[0];
+        HOL_UNROLL
+        for (int k = 1; k < 3; ++k) {
+            T2 = mul_add(q[k], t[k] * t[k], T2);
+            sum = sum + t[k];
+        }
+        const V shared = (m.w[0] * m.w[0]) * ((1 / (most_cancelled * most_cancelled)) * T2);
+        HOL_UNROLL
+        for (int k = 0; k < 3; ++k) {
+            const V of_one = adj[k][k] * r, alone = y[k] * of_one;
+            least = min(mul_add(-shared, q[k] * (of_one * of_one), mul_add(t[k], t[k], alone * alone)), least);
+        }
+        return finite(sum) & ~less(least, V{}) & ordinary_squares<V>(abs(r), abs(r), most_of_three);
+    }
+
+    // G of all atoms.
+    inline HOL_FORCED void pull(const V *t, Vector3<V> *g) const {
+        HOL_UNROLL
+        for (int k = 0; k < 3; ++k) {
+            const Vector3<V> p = t[k] * d[k];
+            g[0] = k == 0 ? p : g[0] + p;
+            g[k + 1] = {-p.x, -p.y, -p.z};
+        }
+    }
+};
+
+template <class V, class Atoms>
+HOL_INLINE void write_star_bonds(const Atoms &atoms, const V *t, double factor, double *out, unsigned which) {
+    V value[3];
+    HOL_UNROLL
+    for (int k = 0; k < 3; ++k) value[k] = mul_add(Width<V>::all(factor), t[k], V{});
+    atoms.write_bonds(out, value, which);
+}
+
+struct StarForcesVerb {
+    static constexpr bool in_steps = false;
+    template <int N, class V>
+    using Kind = StarMasses<N, V>;
+    const ForcesCall &call;
+    Tally &tally;
+
+    // Returns the lanes that are done.
+    template <Inlined where, class V>
+    __attribute__((noinline)) unsigned solve(const StarAtoms<where, 3, V> &atoms, const MoleculeLane *,
+                                             const StarMasses<3, V> &m, MaskOf<V> in_use) const {
+        Vector3<V> r[4];
+        V y[3], t[3];
+        Star<V> star(m);
+        atoms.read(call.r, r);
+        atoms.take_bonds(r, call.box, star.d);
+        star.invert();
+        find_sides(atoms, star, y);
+        star.solve(y, t);
+        const unsigned good = bits(in_use & star.good(y, t));
+        if (!good) return good;
+        if (call.lambda) write_star_bonds(atoms, t, 0.5, call.lambda, good);
+        if (call.tension) {
+            const V T[3] = {t[0] * sqrt(star.q[0]), t[1] * sqrt(star.q[1]), t[2] * sqrt(star.q[2])};
+            write_star_bonds(atoms, T, 1, call.tension, good);
+        }
+        if (call.virial) add_bonds_virial<3>(star.d, t, 1, good, tally);
+        if (!call.g.x) return good;
+        Vector3<V> g[4];
+        star.pull(t, g);
+        if (call.add) {
+            atoms.read(call.g, r);
+            HOL_UNROLL
+            for (int i = 0; i < 4; ++i) g[i] = r[i] + g[i];
+        }
+        atoms.write(call.g, g, good);
+        return good;
+    }
+
+    // As load.hpp makes them.
+    template <Inlined where, class V>
+    inline HOL_FORCED void find_sides(const StarAtoms<where, 3, V> &atoms, const Star<V> &star, V *y) const {
+        Vector3<V> a[4];
+        HOL_UNROLL
+        for (int k = 0; k < 3; ++k) y[k] = V{};
+        if (call.v.x) {
+            atoms.read(call.v, a);
+            HOL_UNROLL
+            for (int k = 0; k < 3; ++k) {
+                const Vector3<V> dv = a[k + 1] - a[0];
+                y[k] = dot(dv, dv);
+            }
+        }
+        if (call.f.x) {
+            atoms.read(call.f, a);
+            const Vector3<V> first = (-star.m.w[0]) * a[0];
+            HOL_UNROLL
+            for (int k = 0; k < 3; ++k) {
+                const Vector3<V> d = star.d[k], f = add_times(first, star.m.w[k + 1], a[k + 1]);
+                y[k] = mul_add(d.z, f.z, mul_add(d.y, f.y, mul_add(d.x, f.x, y[k])));
+            }
+        }
+    }
+};
+
+// A second solve for the rates that the first leaves, as velocities.hpp has it.
+struct StarVelocitiesVerb {
+    static constexpr bool in_steps = false;
+    template <int N, class V>
+    using Kind = StarMasses<N, V>;
+    const VelocitiesCall &call;
+    Tally &tally;
+
+    // Returns the lanes that are done.
+    template <Inlined where, class V>
+    __attribute__((noinline)) unsigned solve(const StarAtoms<where, 3, V> &atoms, const MoleculeLane *,
+                                             const StarMasses<3, V> &m, MaskOf<V> in_use) const {
+        Vector3<V> r[4], v[4];
+        V y[3], t[3], again[3];
+        Star<V> star(m);
+        atoms.read(call.r, r);
+        atoms.take_bonds(r, call.box, star.d);
+        star.invert();
+        atoms.read(call.v, v);
+        find_rates(call.strain, star, v, y);
+        star.solve(y, t);
+        const unsigned good = bits(in_use & star.good(y, t));
+        if (!good) return good;
+        if (call.lambda) write_star_bonds(atoms, t, 0.5, call.lambda, good);
+        if (call.virial) add_bonds_virial<3>(star.d, t, 1, good, tally);
+        move(star, t, v);
+        if (!call.v.is_float) {
+            find_rates(call.strain, star, v, y);
+            star.solve(y, again);
+            move(star, again, v);
+        }
+        atoms.write(call.v, v, good);
+        return good;
+    }
+
+    template <class V>
+    HOL_STATIC void find_rates(const double *strain, const Star<V> &star, const Vector3<V> *v, V *y) {
+        HOL_UNROLL
+        for (int k = 0; k < 3; ++k) y[k] = dot(star.d[k], v[k + 1] - v[0]);
+        for (int k = 0; k < 3 && strain; ++k) y[k] = y[k] + stretching(strain, star.d[k]);
+    }
+    template <class V>
+    HOL_STATIC void move(const Star<V> &star, const V *t, Vector3<V> *v) {
+        Vector3<V> g[4];
+        star.pull(t, g);
+        HOL_UNROLL
+        for (int i = 0; i < 4; ++i) v[i] = add_times(v[i], star.m.w[i], g[i]);
+    }
+};
+
+}  // namespace holonomic::HOL_ISA::graph

@@ -1,0 +1,156 @@
+// The linear equations of one large tree, piece by piece (batch.hpp): what is done with a piece is done while it is in
+// a cache, and by any thread.
+#pragma once
+
+#include "core/kernels/molecules/share_out.hpp"
+#include "core/kernels/molecules/tree_batch/flagged.hpp"
+
+namespace holonomic::HOL_ISA::graph {
+
+struct LargeTree {
+    typedef BatchTrees::Range Range;
+    struct Piece {
+        Cancelling cancelling;
+        double margin;
+    };
+    BatchLinear &z;
+    const LongTeam *team;
+    Piece *piece;  // [n_pieces + 1]
+
+    static int64_t bytes(const TreeBatch &f) {
+        return (f.n_pieces > 0 ? f.n_pieces + 1 : 0) * static_cast<int64_t>(sizeof(Piece));
+    }
+    // The memory behind that of z is taken, too.
+    LargeTree(BatchLinear &linear, const LongTeam *threads, Memory<vec> &memory)
+        : z(linear), team(threads), piece(reinterpret_cast<Piece *>(memory.next)) {
+        static_assert(sizeof(Piece) % sizeof(double) == 0, "");
+        memory.next += bytes(z.f) / static_cast<int64_t>(sizeof(double));
+        for (int32_t p = 0; p <= top(); ++p) piece[p] = {};
+        z.per_cancelled2 = 1 / most_cancelled2(z.f.elimination[0]->n_bonds);
+    }
+
+    int32_t top() const { return z.f.n_pieces; }
+    Memory<vec> memory(int32_t p) const {
+        Memory<vec> own = z.working;
+        own.values(p * BatchLinear::joint_values(z.f));
+        return own;
+    }
+    template <class Body>
+    void for_pieces(const Body &body) const {
+        share_out(team, top(), body);
+    }
+
+    // The top is loaded before the pieces, which add to it.
+    void load(int32_t p) const {
+        z.load(z.piece(p));
+        piece[p].cancelling.n_extended = 0;
+        piece[p].margin = 1;
+    }
+    void eliminate(int32_t p) const {
+        const Range range = z.piece(p);
+        Piece &own = piece[p];
+        const vec margin = z.up(range, memory(p), splat(1), TreeFlagged{&own.cancelling, &own.margin});
+        if (any(less(margin, vec{}))) own.margin = -1;
+    }
+    void substitute_back(int32_t p) const {
+        Piece &own = piece[p];
+        z.down<true>(z.piece(p), TreeFlagged{&own.cancelling, &own.margin});
+        if (any(~z.finite_in(z.piece(p)))) own.margin = -1;
+    }
+
+    // Cancelling bonds have been found, and are to be looked at again.
+    bool to_be_repeated() const {
+        bool any_new = false;
+        for (int32_t p = 0; p <= top(); ++p) {
+            Cancelling &cancelling = piece[p].cancelling;
+            any_new = any_new || (cancelling.n > 0 && !cancelling.again);
+            cancelling.again = true;
+        }
+        return any_new && is_good();
+    }
+    bool is_good() const {
+        for (int32_t p = 0; p <= top(); ++p)
+            if (!(piece[p].margin >= 0)) return false;
+        return true;
+    }
+
+    // Returns whether plain arithmetic answers for the tree.
+    bool solve() const {
+        do {
+            load(top());
+            for_pieces([&](int32_t p) {
+                load(p);
+                eliminate(p);
+            });
+            eliminate(top());
+            substitute_back(top());
+            for_pieces([&](int32_t p) { substitute_back(p); });
+        } while (to_be_repeated());
+        return is_good();
+    }
+
+    // Calls write(range) for all.
+    template <class Write>
+    void for_ranges(const Write &write) const {
+        for_pieces([&](int32_t p) { write(z.piece(p)); });
+        write(z.piece(top()));
+    }
+    // In the order of the slots, whatever lanes there are.
+    void add_virial(Tally &tally) const {
+        MoleculesVirial<double> virial;
+        for (int32_t slot = 0; slot < z.f.elimination[0]->n_tree; ++slot) {
+            const BondRow<double> bond = bond_at(z.f.element[slot]);
+            virial.add(bond.d, bond.t * bond.d);
+        }
+        virial.count(1, 1, tally);
+    }
+    BondRow<double> bond_at(int32_t element) const { return one_of(z.row[element / W], element % W); }
+
+    void project(bool twice) const {
+        z.add_pulls_to_velocities(z.piece(top()));
+        if (!twice) return for_pieces([&](int32_t p) { z.add_pulls_to_velocities(z.piece(p)); });
+        z.find_rates(z.piece(top()));
+        for_pieces([&](int32_t p) {
+            z.add_pulls_to_velocities(z.piece(p));
+            z.find_rates(z.piece(p));
+            z.substitute(z.piece(p), memory(p));
+        });
+        z.substitute(z.piece(top()), memory(top()));
+        z.down<false>(z.piece(top()), BatchFlagged{z.margin});
+        for_pieces([&](int32_t p) {
+            z.down<false>(z.piece(p), BatchFlagged{z.margin});
+            z.add_pulls_to_velocities(z.piece(p));
+        });
+        z.add_pulls_to_velocities(z.piece(top()));
+    }
+
+    // Returns whether any atom is overcorrected by the solution.
+    bool any_overcorrected() const {
+        for (int32_t p = 0; p <= top(); ++p) {
+            const Cancelling &cancelling = piece[p].cancelling;
+            const Range range = z.piece(p);
+            if (cancelling.n_extended > Cancelling::most_extended) {
+                for (int32_t atom = range.step * W; atom < range.inner_end() * W; ++atom)
+                    if (z.f.held[z.f.step[atom / W].first] >> atom % W & 1)
+                        if (is_overcorrected(atom)) return true;
+                continue;
+            }
+            for (int32_t i = 0; i < cancelling.n_extended; ++i)
+                if (is_overcorrected(cancelling.extended[i])) return true;
+        }
+        return false;
+    }
+    // An atom by its number in `cancelling`.
+    __attribute__((noinline)) bool is_overcorrected(int32_t number) const {
+        const BatchJoint joint(z, number / W);
+        const int i = number % W;
+        double v[3];
+        read_row(*z.in.v, z.at.number(i, z.atom_of(joint.step)[i]), v);
+        Overcorrected overcorrected(bond_at(z.above_of(joint.step)[i]));
+        for (int a = 0; a < joint.children(i); ++a)
+            overcorrected.add_child(bond_at(joint.element(a, i, z.f.step[joint.step].children)));
+        return overcorrected.is(joint.w()[i], v);
+    }
+};
+
+}  // namespace holonomic::HOL_ISA::graph

@@ -1,0 +1,21 @@
+// The arms of a large molecule's trees (core/kernels/molecules/elimination_plan.hpp).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/kernels/molecules/elimination_plan.hpp"
+
+namespace holonomic {
+
+struct TreeArms {
+    std::vector<EliminationPlan::Arm> arm;
+    std::vector<EliminationPlan::Stretch> stretch;
+    std::vector<std::int32_t> share_start;
+};
+
+// From the parents, the children and the numbers of an elimination plan; none, if they have little of
+// it. Takes O(n).
+TreeArms arms_of(const EliminationPlan &s);
+
+}  // namespace holonomic

@@ -1,0 +1,201 @@
+#include "core/molecules/planned/ldl_order.hpp"
+
+#include <algorithm>
+#include <queue>
+#include <utility>
+
+namespace holonomic {
+
+namespace {
+
+using Rows = std::vector<Numbers>;
+
+std::int32_t entries_of(const Fill &fill, std::int32_t k) {
+    return fill.column_start[at(k) + 1] - fill.column_start[at(k)];
+}
+// Of a column in the elimination's tree; -1: a root.
+std::int32_t parent_of(const Fill &fill, std::int32_t k) {
+    return entries_of(fill, k) > 0 ? fill.row[at(fill.column_start[at(k)])] : -1;
+}
+
+// Of each column with all below it.
+Numbers sizes_of(const Fill &fill) {
+    Numbers size(fill.column_start.size() - 1, 1);
+    for (std::int32_t k = 0; at(k) < size.size(); ++k)
+        if (const std::int32_t parent = parent_of(fill, k); parent >= 0) size[at(parent)] += size[at(k)];
+    return size;
+}
+
+// A post-order of the tree in which the parent of a column is its first row. Of what hangs below a column the largest
+// part comes first, so that the rest stands next to it.
+Numbers post_order(const Fill &fill, const Numbers &size) {
+    const std::int32_t n = static_cast<std::int32_t>(size.size());
+    const auto parent = [&](std::int32_t k) { return parent_of(fill, k); };
+    Numbers order, stack;
+    Rows children(at(n));
+    for (std::int32_t k = 0; k < n; ++k)
+        if (parent(k) >= 0) children[at(parent(k))].push_back(k);
+    for (Numbers &list : children)  // the last one is visited first
+        std::stable_sort(list.begin(), list.end(),
+                         [&](std::int32_t a, std::int32_t b) { return size[at(a)] < size[at(b)]; });
+    for (std::int32_t root = 0; root < n; ++root) {
+        if (parent(root) >= 0) continue;
+        stack.assign(1, root);
+        while (!stack.empty()) {
+            Numbers &below = children[at(stack.back())];
+            if (below.empty()) {
+                order.push_back(stack.back());
+                stack.pop_back();
+            } else {
+                const std::int32_t next = below.back();
+                below.pop_back();
+                stack.push_back(next);
+            }
+        }
+    }
+    return order;
+}
+
+// Subtrees of at most `most` columns: of the tree what hangs from larger parts, which are the separator. Parts that
+// follow each other share a subtree. Of a subtree that is no multiple of four the last columns go to the separator.
+ListOrder cut(const Fill &fill, const Numbers &order, const Numbers &size, std::int32_t most) {
+    ListOrder cut;
+    Numbers separator;
+    std::int32_t first = 0;
+    const auto end_subtree = [&](std::int32_t end) {
+        const auto begin = cut.column.begin() + end - (end - first) % 4;
+        separator.insert(separator.begin(), begin, cut.column.begin() + end);
+        cut.column.erase(begin, cut.column.begin() + end);
+        first = end - (end - first) % 4;
+        cut.subtree_end.push_back(first);
+    };
+    for (const std::int32_t k : order) {
+        if (size[at(k)] > most) {
+            separator.push_back(k);
+            continue;
+        }
+        cut.column.push_back(k);
+        const std::int32_t parent = parent_of(fill, k), n = static_cast<std::int32_t>(cut.column.size());
+        if ((parent < 0 || size[at(parent)] > most) && n - first > most) end_subtree(n - size[at(k)]);
+    }
+    end_subtree(static_cast<std::int32_t>(cut.column.size()));
+    cut.column.insert(cut.column.end(), separator.begin(), separator.end());
+    return cut;
+}
+
+// As many subtrees as there can be while the separator is little, by the molecule alone; none of one that is too small
+// for two threads. In a separator one column waits for the next: of a protein it takes tens of ns for each.
+ListOrder in_subtrees(const Fill &fill) {
+    constexpr std::int32_t shortest = 8192, shortest_subtree = 2048;
+    const Numbers size = sizes_of(fill);
+    Numbers order = post_order(fill, size);
+    const std::int32_t n = static_cast<std::int32_t>(size.size()), longest_separator = std::max(n / 256, 64);
+    for (const double part : {1 / 16., 1 / 8., 1 / 4., 1 / 2., 2 / 3.}) {
+        const std::int32_t most = std::max(shortest_subtree, static_cast<std::int32_t>(part * n));
+        const auto separator = std::count_if(size.begin(), size.end(), [&](std::int32_t k) { return k > most; });
+        if (n >= shortest && separator <= longest_separator) return cut(fill, order, size, most);
+    }
+    return {std::move(order), {}};
+}
+
+// That order in rounds of columns that do not wait for each other, so that a processor can work on them at once: those
+// farthest from the root among the next ones. Within a round by the number of entries. Each subtree by itself.
+class Rounds {
+public:
+    Rounds(const Fill &fill, const Numbers &order)
+        : fill_(fill), order_(order), depth_(order_.size()), waits_for_(order_.size()), place_(order_.size()),
+          done_(order_.size()) {
+        for (std::size_t p = order_.size(); p-- > 0;) {
+            place_[at(order_[p])] = static_cast<std::int32_t>(p);
+            const std::int32_t k = order_[p], parent = parent_of(fill, k);
+            if (parent < 0) continue;
+            depth_[at(k)] = depth_[at(parent)] + 1;
+            ++waits_for_[at(parent)];
+        }
+    }
+
+    // Of the columns up to `end`, after those before.
+    void make(std::size_t end, Numbers &made) {
+        Numbers round;
+        while (made.size() < end) {
+            advance(end);
+            round.clear();
+            while (!ready_.empty() && round.size() < most_in_round) {
+                const std::size_t place = static_cast<std::size_t>(-ready_.top().second);
+                ready_.pop();
+                round.push_back(order_[place]);
+                done_[place] = 1;
+            }
+            std::stable_sort(round.begin(), round.end(), [&](std::int32_t a, std::int32_t b) {
+                return entries_of(fill_, a) < entries_of(fill_, b);
+            });
+            made.insert(made.end(), round.begin(), round.end());
+            for (const std::int32_t k : round) release(parent_of(fill_, k));
+        }
+    }
+
+private:
+    static constexpr std::size_t most_in_round = 32, columns_ahead = 8192;
+
+    // To the first column that is not done, and as far ahead of it as may be looked.
+    void advance(std::size_t end) {
+        while (done_[first_]) ++first_;
+        for (; seen_ < std::min(end, first_ + columns_ahead); ++seen_)
+            if (waits_for_[at(order_[seen_])] == 0) push(seen_);
+    }
+    void push(std::size_t place) { ready_.emplace(depth_[at(order_[place])], -static_cast<std::int64_t>(place)); }
+    void release(std::int32_t k) {
+        if (k >= 0 && --waits_for_[at(k)] == 0 && at(place_[at(k)]) < seen_) push(at(place_[at(k)]));
+    }
+
+    const Fill &fill_;
+    const Numbers &order_;
+    Numbers depth_, waits_for_, place_;  // by column
+    std::vector<unsigned char> done_;    // by place in order_
+    std::size_t first_ = 0, seen_ = 0;
+    // By depth, of equally deep ones the first.
+    std::priority_queue<std::pair<std::int32_t, std::int64_t>> ready_;
+};
+
+}  // namespace
+
+Numbers bonds_from_the_leaves(const EliminationPlan &s) {
+    const Lists bonds =
+        invert(s.n_atoms, s.n_bonds, [&](std::int32_t k, int end) { return (end ? s.atom_j : s.atom_i)[k]; });
+    Numbers order, leaves, left(at(s.n_atoms));
+    std::vector<unsigned char> gone(at(s.n_bonds));
+    for (std::int32_t i = 0; i < s.n_atoms; ++i)
+        if ((left[at(i)] = bonds.size(i)) == 1) leaves.push_back(i);
+    for (std::size_t next = 0; next < leaves.size(); ++next)
+        for (const std::int32_t *k = bonds.begin(leaves[next]); k != bonds.end(leaves[next]); ++k) {
+            if (gone[at(*k)]) continue;
+            gone[at(*k)] = 1;
+            order.push_back(*k);
+            const std::int32_t other = s.atom_i[*k] == leaves[next] ? s.atom_j[*k] : s.atom_i[*k];
+            if (--left[at(other)] == 1) leaves.push_back(other);
+        }
+    Numbers core, number(at(s.n_bonds), -1);
+    for (std::int32_t k = 0; k < s.n_bonds; ++k) {
+        if (gone[at(k)]) continue;
+        number[at(k)] = static_cast<std::int32_t>(core.size());
+        core.push_back(k);
+    }
+    Rows neighbours(core.size());
+    for (std::size_t p = 0; p < core.size(); ++p)
+        for (const std::int32_t i : {s.atom_i[core[p]], s.atom_j[core[p]]})
+            for (const std::int32_t *l = bonds.begin(i); l != bonds.end(i); ++l)
+                if (*l != core[p] && !gone[at(*l)]) neighbours[p].push_back(number[at(*l)]);
+    for (const std::int32_t p : minimum_degree(std::move(neighbours), Ties::first)) order.push_back(core[at(p)]);
+    return order;
+}
+
+ListOrder order_of_list(const Fill &fill) {
+    const ListOrder order = in_subtrees(fill);
+    ListOrder made = {{}, order.subtree_end};
+    Rounds rounds(fill, order.column);
+    for (const std::int32_t end : order.subtree_end) rounds.make(at(end), made.column);
+    rounds.make(order.column.size(), made.column);
+    return made;
+}
+
+}  // namespace holonomic

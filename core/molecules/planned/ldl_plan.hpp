@@ -1,0 +1,26 @@
+// Makes the list along which a graph, or a large tree, is eliminated.
+#pragma once
+
+#include <vector>
+
+#include "core/kernels/molecules/elimination_plan.hpp"
+#include "core/kernels/molecules/sparse_ldl/ldl_plan.hpp"
+#include "core/molecules/given/lists.hpp"
+
+namespace holonomic {
+
+struct LdlArrays {
+    Numbers atom_of, home, place_of, bond_of, from, to, row, row_4, column_4, mass, update, outer;
+    std::vector<LdlPlan::Tile> tile;
+    std::vector<LdlPlan::Subtree> subtree;
+    std::vector<LdlPlan::Run> run;
+    std::vector<LdlPlan::Late> late, late_entry;
+    std::vector<LdlPlan::Visit> visit;
+    LdlPlan list;
+};
+
+// Of a molecule whose bonds have been numbered: trees first, then the core in its order. Throws std::length_error where
+// the factor fills up to 2^31 entries.
+void make_ldl_plan(const EliminationPlan &s, LdlArrays &arrays);
+
+}  // namespace holonomic

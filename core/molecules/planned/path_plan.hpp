@@ -1,0 +1,27 @@
+// The paths and junctions of a large molecule (core/kernels/molecules/paths/plan.hpp).
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/kernels/molecules/elimination_plan.hpp"
+#include "core/kernels/molecules/paths/plan.hpp"
+#include "core/molecules/given/lists.hpp"
+
+namespace holonomic {
+
+struct PathArrays {
+    std::vector<PathPlan::Path> path;
+    std::vector<PathPlan::Piece> piece;
+    std::vector<PathPlan::Kind> kind;
+    std::vector<PathPlan::Overlap> overlap;
+    Numbers atom, bond;
+    std::vector<std::unique_ptr<const EliminationPlan>> elimination;
+    PathPlan plan;
+};
+
+// Returns whether paths pay in a molecule whose bonds and fixed atoms are known: junctions are few, and of few kinds.
+// Takes O(n).
+bool make_path_plan(const EliminationPlan &s, PathArrays &arrays);
+
+}  // namespace holonomic

@@ -1,0 +1,23 @@
+// Which atoms of a large molecule's trees can be worked on at once (core/kernels/molecules/elimination_plan.hpp).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/kernels/molecules/elimination_plan.hpp"
+
+namespace holonomic {
+
+struct TreeRuns {
+    std::vector<EliminationPlan::Run> run;
+    std::vector<std::int32_t> slot, piece_start;
+    EliminationPlan::Runs runs() const { return {run.data(), slot.data(), piece_start.data()}; }
+};
+
+// From the parents and the children of an elimination plan. Takes O(n).
+TreeRuns runs_of(const EliminationPlan &s);
+
+// In how many places of lanes the atoms of a large tree stand, empty ones included.
+std::int64_t places_in_lanes(const TreeRuns &runs);
+
+}  // namespace holonomic

@@ -1,0 +1,32 @@
+#!/usr/bin/env bash
+# Words that had a meaning of their own here, where the field has a word: none is back in the core or in its pages.
+#
+#   words.sh TOP
+set -u
+cd "$1" || exit 1
+# word, and what is said now
+words='
+[Ff]lat_?[Ll]ist      sparse L D L^T
+[Ff]orests?           batch of trees
+[Oo]ne_?[Tt]ree       large tree
+[Ss]chedules?         elimination plan
+[Kk]nots?             junction
+[Gg]uests?            ghost
+[Tt]runks?            separator
+[Cc]areful            extended precision
+[Ff]ourfold           quad-double
+[Tt]wofold            double-double
+[Dd]oubtful           flagged
+[Ff]aint              cancelling
+[Tt]orn               overcorrected
+'
+status=0
+while read -r word now; do
+    [ -n "$word" ] || continue
+    # Whole words, and parts of identifiers.
+    found=$(grep -rnE --include='*.cpp' --include='*.hpp' --include='*.md' --include='*.cmake' "(^|[^A-Za-z])$word([^a-z]|\$)" \
+        core docs/architecture.md docs/stability.md docs/theory.md docs/performance.md | grep -v _knot_mask | head -n 5)
+    [ -z "$found" ] || { echo "$found"; echo "^ the word is: $now"; status=1; }
+done <<<"$words"
+[ $status -ne 0 ] || echo "no old word"
+exit $status
