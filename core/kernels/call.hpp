@@ -11,8 +11,9 @@ struct AtomArray {
     int64_t stride;  // bytes
     bool is_float;   // the caller's numbers are floats
     bool packed;     // doubles [n_atoms][3], the layout that the kernels read and write in place; of floats: a copy
-    bool holds_floats() const { return is_float && !packed; }
 };
+// No member: each set of kernels must have its own.
+static inline bool holds_floats(const AtomArray &array) { return array.is_float && !array.packed; }
 
 // One chain as a kernel sees it.
 struct Lane {

@@ -77,9 +77,9 @@ HOL_INLINE void masses_by_slot(const EliminationPlan &s, const MoleculeLane *lan
 HOL_INLINE void read_row(const AtomArray &array, int64_t number, double *x) {
     const char *const p[3] = {array.x, array.y, array.z};
     for (int c = 0; c < 3; ++c)
-        x[c] = !p[c]                  ? 0.0
-               : array.holds_floats() ? element<float>(p[c] + number * array.stride)
-                                      : element<double>(p[c] + number * array.stride);
+        x[c] = !p[c]                 ? 0.0
+               : holds_floats(array) ? element<float>(p[c] + number * array.stride)
+                                     : element<double>(p[c] + number * array.stride);
 }
 
 // Finds the slots at the two ends of a bond. It points from the first to the second.

@@ -87,7 +87,7 @@ HOL_NOINLINE void read_anywhere(const AtomArray &array, const Atoms<V> &at, int6
         V *const component[3] = {&a.x, &a.y, &a.z};
         for (int c = 0; c < 3; ++c)
             if (p[c])
-                Width<V>::set(*component[c], i, array.holds_floats() ? element<float>(p[c]) : element<double>(p[c]));
+                Width<V>::set(*component[c], i, holds_floats(array) ? element<float>(p[c]) : element<double>(p[c]));
     }
 }
 
@@ -124,7 +124,7 @@ HOL_INLINE void write_one(const AtomArray &array, int64_t number, const Vector3<
     char *const p[3] = {array.x, array.y, array.z};
     for (int c = 0; c < 3; ++c) {
         if (!p[c]) continue;
-        if (array.holds_floats())
+        if (holds_floats(array))
             put<float>(p[c] + number * array.stride, value[c]);
         else
             put<double>(p[c] + number * array.stride, value[c]);

@@ -139,7 +139,7 @@ private:
                 component_of<T>(array.z, stride, number)};
     }
     __attribute__((noinline)) static void read_anywhere(const AtomArray &array, const int64_t *number, vec3 &a) {
-        a = array.holds_floats() ? read_as<float>(array, number) : read_as<double>(array, number);
+        a = holds_floats(array) ? read_as<float>(array, number) : read_as<double>(array, number);
     }
 };
 
