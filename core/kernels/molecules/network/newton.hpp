@@ -1,4 +1,4 @@
-// Newton's method for the positions of a network, as flat_newton.hpp has it for molecules by sparse LDL^T.
+// Newton's method for the positions of a network, as sparse_ldl/newton.hpp has it.
 #pragma once
 
 #include "core/kernels/molecules/iterate.hpp"

@@ -1,4 +1,4 @@
-// The proof that what flat_linear.hpp finds needs no refinement. With |.| by elements, it solves equations that are off
+// The proof that what linear.hpp finds needs no refinement. With |.| by elements, it solves equations that are off
 // by a few roundings of
 //
 //     R = |L| D |L^T| |t| + sum over both ends i of w_i |d| sum over the bonds of i of |t| |d|
@@ -6,7 +6,7 @@
 // (elimination and substitutions; the products d.d' and w). Where R is no more than the terms that an equation is made
 // of, all errors are of the size of its scale |A^-1| S. Where it is more at a few bonds, their equations are looked at
 // in twice the precision, and what is left of these alone is solved for. Elsewhere, or where a pivot is small,
-// flat_refine.hpp corrects, or the extended-precision solver.
+// refinement.hpp corrects, or the extended-precision solver.
 #pragma once
 
 #include "core/kernels/arithmetic/thresholds.hpp"

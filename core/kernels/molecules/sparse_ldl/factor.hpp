@@ -44,7 +44,7 @@ HOL_INLINE unsigned pivots_above(const LdlLinear<V> &x, const Tile &tile, double
     return all;
 }
 
-// Back, with the part of R that elimination and substitutions have: flat_proof.hpp.
+// Back, with the part of R that elimination and substitutions have: error_bound.hpp.
 template <class V>
 __attribute__((noinline)) void substitute_back(const LdlLinear<V> &x, const Tile &tile) {
     V *const t = x.t, *const back = x.back;

@@ -1,6 +1,6 @@
 // Linear equations of molecules with cycles, and of large ones, by sparse LDL^T (ldl_plan.hpp): A t = b as it stands,
-// and what it is made of. Of one molecule (V = double), or of W of one shape in lanes. flat_factor.hpp solves them;
-// whether that will do without refinement, flat_proof.hpp says.
+// and what it is made of. Of one molecule (V = double), or of W of one shape in lanes. factor.hpp solves them;
+// whether that will do without refinement, error_bound.hpp says.
 #pragma once
 
 #include "core/kernels/molecules/load.hpp"
@@ -30,13 +30,13 @@ struct LdlLinear {
     Rows<V> r, v;  // of one tile: coordinates, then G; velocities, then |a| as it was, then pulls of rates
     V *t, *per_pivot;   // right-hand sides, then multipliers; pivots, then 1 over them
     V *lower, *size;    // |d|
-    V *diagonal;        // of A, of one tile; then R of outer columns (flat_proof.hpp)
-    V *back, *rate;     // one memory: R, changes (flat_proof.hpp), solutions (flat_refine.hpp), rates as they are left
-    V *side;            // right-hand sides as they came: flat_refine.hpp
-    int32_t *bonds_at;  // of one tile: flat_residual.hpp
+    V *diagonal;        // of A, of one tile; then R of outer columns (error_bound.hpp)
+    V *back, *rate;     // one memory: R, changes (error_bound.hpp), solutions (refinement.hpp), rates as they are left
+    V *side;            // right-hand sides as they came: refinement.hpp
+    int32_t *bonds_at;  // of one tile: residual.hpp
     Rows<V> d_low, a_low;   // what refinement adds to the bonds of one tile, and to all accelerations; doubts
-    V *found;               // [n_tiles] flat_proof.hpp, flat_refine.hpp
-    unsigned *left, *firm;  // [n_subtrees + 1] lanes: flat_proof.hpp; in which pivots may do with refinement
+    V *found;               // [n_tiles] error_bound.hpp, refinement.hpp
+    unsigned *left, *firm;  // [n_subtrees + 1] lanes: error_bound.hpp; in which pivots may do with refinement
     const bool with_rates;  // they are wanted
 
     static int64_t values(const LdlPlan &s) {

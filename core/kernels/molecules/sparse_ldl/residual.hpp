@@ -1,5 +1,5 @@
 // What the multipliers leave of the equation of a single bond of one molecule, in twice the precision. The bound of
-// flat_proof.hpp is for the worst case: of a million bonds some miss it by little, whose equations are solved all the
+// error_bound.hpp is for the worst case: of a million bonds some miss it by little, whose equations are solved all the
 // same.
 #pragma once
 
