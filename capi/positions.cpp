@@ -110,6 +110,7 @@ int hol_project_positions_along(const hol_chains *chains, const double *b, doubl
         need(chains->n_atoms(), r, "r");
         PositionsCall call;
         set(call, dt, lambda, guess);
+        call.r_ref = {};  // the bonds are given
         call.r = packed_array(r);
         call.v = packed_array(v);
         const AtomArray bonds = packed_array(b);
@@ -126,6 +127,7 @@ int hol_project_positions_along_view(const hol_chains *chains, const hol_const_v
         need(chains->n_atoms(), r, "r");
         PositionsCall call;
         set(call, dt, lambda, guess);
+        call.r_ref = {};
         const AtomArray bonds = viewed_array(chains->n_bonds(), b, "b");
         call.r = viewed_array(chains->n_atoms(), r, "r");
         call.v = viewed_array(chains->n_atoms(), v, "v");
