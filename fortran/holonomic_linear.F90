@@ -1,10 +1,10 @@
 ! Linear relations among atoms, sum c_i r_i = 0: sites by a base, atoms that are one point, centroids. Each procedure takes
 ! integers and reals of 32 or 64 bits.
 module holonomic_linear
-   use, intrinsic :: iso_c_binding, only: c_int64_t, c_loc, c_null_ptr, c_ptr
+   use, intrinsic :: iso_c_binding, only: c_int64_t, c_loc, c_ptr
    use, intrinsic :: iso_fortran_env, only: int32, int64, real32, real64
    use holonomic_c, only: hol_chains_add_linear, hol_chains_add_linear_molecules, HOL_ERR_VALUE
-   use holonomic_rigid, only: chain_set_rigid
+   use holonomic_rigid, only: chain_set_rigid, take_bonds
    use holonomic_status, only: decimal, failure, settle
    implicit none
    private
@@ -26,29 +26,32 @@ module holonomic_linear
 
 contains
 
+#define SET_OF_GROUPS chain_set_linear
+#define VALUES coefficients
+#define OF_VALUES (:)
 #define INTEGERS 32
 #define REALS 32
-#define ADD_LINEAR add_linear_32_32
-#define ADD_LINEAR_MOLECULES add_linear_molecules_32_32
-#include "linear.inc"
+#define ADD_GROUPS add_linear_32_32
+#define ADD_MOLECULES add_linear_molecules_32_32
+#include "groups.inc"
 #define INTEGERS 32
 #define REALS 64
-#define ADD_LINEAR add_linear_32_64
-#define ADD_LINEAR_MOLECULES add_linear_molecules_32_64
-#include "linear.inc"
+#define ADD_GROUPS add_linear_32_64
+#define ADD_MOLECULES add_linear_molecules_32_64
+#include "groups.inc"
 #define INTEGERS 64
 #define REALS 32
-#define ADD_LINEAR add_linear_64_32
-#define ADD_LINEAR_MOLECULES add_linear_molecules_64_32
-#include "linear.inc"
+#define ADD_GROUPS add_linear_64_32
+#define ADD_MOLECULES add_linear_molecules_64_32
+#include "groups.inc"
 #define INTEGERS 64
 #define REALS 64
-#define ADD_LINEAR add_linear_64_64
-#define ADD_LINEAR_MOLECULES add_linear_molecules_64_64
-#include "linear.inc"
+#define ADD_GROUPS add_linear_64_64
+#define ADD_MOLECULES add_linear_molecules_64_64
+#include "groups.inc"
 
    ! In molecules(3): their number, their atoms and the first one; or once.
-   subroutine add_relations(self, atoms, coefficients, sizes, bonds, lengths, molecules, stat, errmsg)
+   subroutine add_all(self, atoms, coefficients, sizes, bonds, lengths, molecules, stat, errmsg)
       class(chain_set_linear), intent(inout) :: self
       integer(int64), intent(in), contiguous, target :: atoms(:)
       real(real64), intent(in), contiguous, target :: coefficients(:)
@@ -65,23 +68,12 @@ contains
       call problem%need_created(self%c_handle())
       relations = [size(atoms, kind=int64)]
       if (present(sizes)) relations = sizes
-      n_bonds = 0
-      pairs = c_null_ptr
-      of_pairs = c_null_ptr
       if (size(coefficients) /= size(atoms) .or. sum(relations) /= size(atoms)) then
          call problem%set(HOL_ERR_VALUE, decimal(size(coefficients, kind=c_int64_t))//" coefficients were given, and sizes "// &
                           "that add up to "//decimal(sum(relations))//", for "// &
                           decimal(size(atoms, kind=c_int64_t))//" atoms")
-      else if (present(bonds) .neqv. present(lengths)) then
-         call problem%set(HOL_ERR_VALUE, "bonds and lengths must be given together")
-      else if (present(bonds)) then
-         if (size(bonds, 1) /= 2 .or. size(bonds, 2) /= size(lengths)) then
-            call problem%set(HOL_ERR_VALUE, "bonds must be (2, "//decimal(size(lengths, kind=c_int64_t))//")")
-         else if (size(lengths) > 0) then
-            n_bonds = size(bonds, 2, c_int64_t)
-            pairs = c_loc(bonds)
-            of_pairs = c_loc(lengths)
-         end if
+      else
+         call take_bonds(bonds, lengths, n_bonds, pairs, of_pairs, problem)
       end if
       if (problem%none() .and. present(molecules)) then
          call problem%ask(hol_chains_add_linear_molecules(self%c_handle(), molecules(1), molecules(2), molecules(3), &
@@ -91,11 +83,7 @@ contains
          call problem%ask(hol_chains_add_linear(self%c_handle(), size(relations, kind=c_int64_t), c_loc(relations), &
                                                 c_loc(atoms), c_loc(coefficients), n_bonds, pairs, of_pairs))
       end if
-      if (present(molecules)) then
-         call settle(problem, "add_linear_molecules", stat, errmsg)
-      else
-         call settle(problem, "add_linear", stat, errmsg)
-      end if
+      call settle(problem, trim(merge("add_linear_molecules", "add_linear          ", present(molecules))), stat, errmsg)
    end subroutine
 
 end module

@@ -8,7 +8,7 @@ module holonomic_rigid
    use holonomic_status, only: decimal, failure, settle
    implicit none
    private
-   public :: chain_set_rigid
+   public :: chain_set_rigid, take_bonds
 
    type, extends(chain_set_bonds) :: chain_set_rigid
    contains
@@ -27,52 +27,32 @@ module holonomic_rigid
 
 contains
 
-   ! Whether the arrays have sizes that go together; if not, `problem` says why.
-   logical function sizes_agree(atoms, places, sizes, bonds, lengths, problem)
-      integer(int64), intent(in) :: atoms(:)
-      real(real64), intent(in) :: places(:, :)
-      integer(int64), intent(in) :: sizes(:)
-      integer(int64), intent(in), optional :: bonds(:, :)
-      real(real64), intent(in), optional :: lengths(:)
-      type(failure), intent(inout) :: problem
-      if (size(places, 1) /= 3 .or. size(places, 2) /= size(atoms)) then
-         call problem%set(HOL_ERR_VALUE, "places must be (3, "//decimal(size(atoms, kind=c_int64_t))//"), not ("// &
-                          decimal(size(places, 1, c_int64_t))//", "//decimal(size(places, 2, c_int64_t))//")")
-      else if (sum(sizes) /= size(atoms)) then
-         call problem%set(HOL_ERR_VALUE, "sizes add up to "//decimal(sum(sizes))//" atoms, "// &
-                          decimal(size(atoms, kind=c_int64_t))//" were given")
-      else if (present(bonds) .neqv. present(lengths)) then
-         call problem%set(HOL_ERR_VALUE, "bonds and lengths must be given together")
-      else if (present(bonds)) then
-         if (size(bonds, 1) /= 2 .or. size(bonds, 2) /= size(lengths)) &
-            call problem%set(HOL_ERR_VALUE, "bonds must be (2, "//decimal(size(lengths, kind=c_int64_t))//")")
-      end if
-      sizes_agree = problem%none()
-   end function
-
+#define SET_OF_GROUPS chain_set_rigid
+#define VALUES places
+#define OF_VALUES (:, :)
 #define INTEGERS 32
 #define REALS 32
-#define ADD_RIGID add_rigid_32_32
-#define ADD_RIGID_MOLECULES add_rigid_molecules_32_32
-#include "rigid.inc"
+#define ADD_GROUPS add_rigid_32_32
+#define ADD_MOLECULES add_rigid_molecules_32_32
+#include "groups.inc"
 #define INTEGERS 32
 #define REALS 64
-#define ADD_RIGID add_rigid_32_64
-#define ADD_RIGID_MOLECULES add_rigid_molecules_32_64
-#include "rigid.inc"
+#define ADD_GROUPS add_rigid_32_64
+#define ADD_MOLECULES add_rigid_molecules_32_64
+#include "groups.inc"
 #define INTEGERS 64
 #define REALS 32
-#define ADD_RIGID add_rigid_64_32
-#define ADD_RIGID_MOLECULES add_rigid_molecules_64_32
-#include "rigid.inc"
+#define ADD_GROUPS add_rigid_64_32
+#define ADD_MOLECULES add_rigid_molecules_64_32
+#include "groups.inc"
 #define INTEGERS 64
 #define REALS 64
-#define ADD_RIGID add_rigid_64_64
-#define ADD_RIGID_MOLECULES add_rigid_molecules_64_64
-#include "rigid.inc"
+#define ADD_GROUPS add_rigid_64_64
+#define ADD_MOLECULES add_rigid_molecules_64_64
+#include "groups.inc"
 
    ! Of the molecule, or with `molecules` of each of that many, of so many atoms, from that atom on.
-   subroutine add_bodies(self, atoms, places, sizes, bonds, lengths, molecules, stat, errmsg)
+   subroutine add_all(self, atoms, places, sizes, bonds, lengths, molecules, stat, errmsg)
       class(chain_set_rigid), intent(inout) :: self
       integer(int64), intent(in), contiguous, target :: atoms(:)
       real(real64), intent(in), contiguous, target :: places(:, :)
@@ -89,8 +69,16 @@ contains
       call problem%need_created(self%c_handle())
       bodies = [size(atoms, kind=int64)]
       if (present(sizes)) bodies = sizes
-      if (sizes_agree(atoms, places, bodies, bonds, lengths, problem)) then
-         call take_bonds(bonds, lengths, n_bonds, pairs, of_pairs)
+      if (size(places, 1) /= 3 .or. size(places, 2) /= size(atoms)) then
+         call problem%set(HOL_ERR_VALUE, "places must be (3, "//decimal(size(atoms, kind=c_int64_t))//"), not ("// &
+                          decimal(size(places, 1, c_int64_t))//", "//decimal(size(places, 2, c_int64_t))//")")
+      else if (sum(bodies) /= size(atoms)) then
+         call problem%set(HOL_ERR_VALUE, "sizes add up to "//decimal(sum(bodies))//" atoms, "// &
+                          decimal(size(atoms, kind=c_int64_t))//" were given")
+      else
+         call take_bonds(bonds, lengths, n_bonds, pairs, of_pairs, problem)
+      end if
+      if (problem%none()) then
          if (present(molecules)) then
             call problem%ask(hol_chains_add_rigid_molecules(self%c_handle(), molecules(1), molecules(2), molecules(3), &
                                                             size(bodies, kind=c_int64_t), c_loc(bodies), c_loc(atoms), &
@@ -103,19 +91,26 @@ contains
       call settle(problem, trim(merge("add_rigid_molecules", "add_rigid          ", present(molecules))), stat, errmsg)
    end subroutine
 
-   subroutine take_bonds(bonds, lengths, n_bonds, pairs, of_pairs)
+   ! Bonds at groups as C has them: null pointers where there are none. If they don't go together, `problem` says why.
+   subroutine take_bonds(bonds, lengths, n_bonds, pairs, of_pairs, problem)
       integer(int64), intent(in), contiguous, optional, target :: bonds(:, :)
       real(real64), intent(in), contiguous, optional, target :: lengths(:)
       integer(c_int64_t), intent(out) :: n_bonds
       type(c_ptr), intent(out) :: pairs, of_pairs
+      type(failure), intent(inout) :: problem
       n_bonds = 0
       pairs = c_null_ptr
       of_pairs = c_null_ptr
-      if (.not. present(bonds)) return
-      n_bonds = size(bonds, 2, c_int64_t)
-      if (n_bonds == 0) return
-      pairs = c_loc(bonds)
-      of_pairs = c_loc(lengths)
+      if (present(bonds) .neqv. present(lengths)) &
+         call problem%set(HOL_ERR_VALUE, "bonds and lengths must be given together")
+      if (.not. (present(bonds) .and. present(lengths))) return
+      if (size(bonds, 1) /= 2 .or. size(bonds, 2) /= size(lengths)) then
+         call problem%set(HOL_ERR_VALUE, "bonds must be (2, "//decimal(size(lengths, kind=c_int64_t))//")")
+      else if (size(lengths) > 0) then
+         n_bonds = size(bonds, 2, c_int64_t)
+         pairs = c_loc(bonds)
+         of_pairs = c_loc(lengths)
+      end if
    end subroutine
 
 end module
