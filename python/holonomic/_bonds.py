@@ -184,7 +184,7 @@ class Bonds:
         ask_to_add(library.hol_chains_add_rigid(self._handle, len(sizes), address(sizes), address(atoms), address(where),
                                                 len(bonds), address(bonds), address(lengths)))
         self._noted("add_rigid", *_apart(sizes, atoms, where), bonds, lengths)
-        self._warn_of_massless(bonds)
+        self._warn_of_massless(bonds, True)
 
     def add_rigid_molecules(self, n_molecules: int, n_atoms: int, bodies: Bodies, places: Places,
                             bonds: Pairs = (), lengths: Floats = (), first_atom: int = 0) -> None:
@@ -199,7 +199,7 @@ class Bonds:
             self._handle, n_molecules, n_atoms, first_atom, len(sizes), address(sizes), address(atoms), address(where),
             len(bonds), address(bonds), address(lengths)))
         self._noted("add_rigid_molecules", n_molecules, n_atoms, *_apart(sizes, atoms, where), bonds, lengths, first_atom)
-        self._warn_of_massless(bonds + first_atom)
+        self._warn_of_massless(bonds + first_atom, True)
 
     def add_linear(self, atoms: Bodies, coefficients: Any, bonds: Pairs = (), lengths: Floats = ()) -> None:
         """Adds linear relations among atoms, sum_i c_i r_i = 0, and bonds of the molecules in which these are.
@@ -264,11 +264,16 @@ class Bonds:
         if len(sites):
             raise ArgumentError(_HELD.format(sites[0]) + "; or name it in `fixed`")
 
-    def _warn_of_massless(self, bonds: np.ndarray) -> None:
-        """Of bonds that have been added, and hold a molecule in space where that is hardly meant."""
-        bonded = bonds[self._masses[bonds] == 0]
-        if self._fixed is not None or len(bonded) == 0:
+    def _warn_of_massless(self, bonds: np.ndarray, at_bodies: bool = False) -> None:
+        """Of bonds that have been added, and hold a molecule in space where that is hardly meant. What is rigid is a body, or has
+        three bonds at such an atom: tethered chains, added one by one, are not looked for in the whole set each time."""
+        massless = self._masses[bonds] == 0
+        if self._fixed is not None or not massless.any():
             return
+        atoms, n_bonds = np.unique(bonds, return_counts=True)
+        if not at_bodies and not np.isin(bonds[massless[:, ::-1]], atoms[n_bonds >= 3]).any():
+            return
+        bonded = bonds[massless]
         sites = bonded[self.held_sites()[bonded]]
         if len(sites):
             what = _HELD.format(sites.min())
