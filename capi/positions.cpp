@@ -61,7 +61,7 @@ private:
 inline void project(const hol_chains *chains, PositionsCall &call, const AtomArray *bonds, double *virial,
                     hol_report *report) {
     holonomic::need_apart(*chains, call.v, "v", call.r, "r");
-    holonomic::need_apart(*chains, call.v, "v", call.r_ref, "r_ref");
+    if (!bonds) holonomic::need_apart(*chains, call.v, "v", call.r_ref, "r_ref");
     ReportTo found(report);
     Compared compared(chains->reference_error);
     holonomic::project_positions(chains->chains, call, bonds, virial, found.get(), &compared);
@@ -110,7 +110,6 @@ int hol_project_positions_along(const hol_chains *chains, const double *b, doubl
         need(chains->n_atoms(), r, "r");
         PositionsCall call;
         set(call, dt, lambda, guess);
-        call.r_ref = {};  // the bonds are given
         call.r = packed_array(r);
         call.v = packed_array(v);
         const AtomArray bonds = packed_array(b);
@@ -127,7 +126,6 @@ int hol_project_positions_along_view(const hol_chains *chains, const hol_const_v
         need(chains->n_atoms(), r, "r");
         PositionsCall call;
         set(call, dt, lambda, guess);
-        call.r_ref = {};
         const AtomArray bonds = viewed_array(chains->n_bonds(), b, "b");
         call.r = viewed_array(chains->n_atoms(), r, "r");
         call.v = viewed_array(chains->n_atoms(), v, "v");

@@ -33,10 +33,6 @@ void check(const rigid::LinearRelation &one, std::int64_t number, int base) {
                           "has coefficients that do not add up to 0: it would hold atoms relative to the origin");
 }
 
-}  // namespace
-
-namespace {
-
 // Relations as loose parts.
 struct RelatedParts {
     std::vector<std::int64_t> sizes, atoms;
