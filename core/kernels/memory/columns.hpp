@@ -20,6 +20,16 @@ HOL_INLINE bool is_in_columns(const AtomArray &a) {
     return !a.is_float && a.z && a.stride == static_cast<int64_t>(sizeof(double));
 }
 
+// Whether all arrays of a call are such.
+HOL_INLINE bool reads_columns(const ForcesCall &call) {
+    return is_in_columns(call.r) && (!call.v.x || is_in_columns(call.v)) && (!call.f.x || is_in_columns(call.f)) &&
+           (!call.g.x || is_in_columns(call.g));
+}
+HOL_INLINE bool reads_columns(const VelocitiesCall &call) { return is_in_columns(call.r) && is_in_columns(call.v); }
+HOL_INLINE bool reads_columns(const PositionsCall &call) {
+    return is_in_columns(call.r) && is_in_columns(call.r_ref) && (!call.v.x || is_in_columns(call.v)) && !call.guess;
+}
+
 // Where the atom `first` of W molecules of n atoms has a component.
 template <int n>
 HOL_INLINE void rows_of_column(double *column, int64_t first, double **p) {

@@ -21,6 +21,36 @@ struct PartArray {
     AtomArray Call::*array;
     bool read, written;
 };
+// All of a call. moves: it counts the molecules that it moves, and writes nothing if there are none.
+template <class Call>
+struct PartArrays;
+template <>
+struct PartArrays<ForcesCall> {
+    static constexpr int n = 4;
+    static constexpr bool moves = false;
+    PartArray<ForcesCall> of[n];
+    explicit PartArrays(const ForcesCall &call)
+        : of{{&ForcesCall::r, true, false},
+             {&ForcesCall::v, true, false},
+             {&ForcesCall::f, true, false},
+             {&ForcesCall::g, call.add, true}} {}
+};
+template <>
+struct PartArrays<VelocitiesCall> {
+    static constexpr int n = 2;
+    static constexpr bool moves = false;
+    PartArray<VelocitiesCall> of[n];
+    explicit PartArrays(const VelocitiesCall &)
+        : of{{&VelocitiesCall::r, true, false}, {&VelocitiesCall::v, true, true}} {}
+};
+template <>
+struct PartArrays<PositionsCall> {
+    static constexpr int n = 3;
+    static constexpr bool moves = true;
+    PartArray<PositionsCall> of[n];
+    explicit PartArrays(const PositionsCall &)
+        : of{{&PositionsCall::r_ref, true, false}, {&PositionsCall::r, true, true}, {&PositionsCall::v, true, true}} {}
+};
 
 HOL_INLINE int64_t atoms_of(const Unit &unit) { return unit.lanes[0].n_bonds + 1; }
 HOL_INLINE int64_t atoms_of(const MoleculeUnit &unit) { return unit.elimination->n_atoms; }
@@ -34,15 +64,16 @@ HOL_INLINE bool comes_in_parts(const MoleculeUnit &unit) {
 }
 
 // Calls work(call, unit, tally) for parts of a unit that has several molecules. Returns false, and has done nothing,
-// where it has not. `moves`: the call counts the molecules that it moves, and writes nothing if there are none.
-template <class Call, class AnyUnit, int n, class Work>
-HOL_NOINLINE bool in_packed_parts(const Call &call, const AnyUnit &unit, const PartArray<Call> (&arrays)[n], bool moves,
-                                  Tally &tally, const Work &work) {
+// where it has not.
+template <class Call, class AnyUnit, class Work>
+HOL_NOINLINE bool in_packed_parts(const Call &call, const AnyUnit &unit, Tally &tally, const Work &work) {
+    constexpr int n = PartArrays<Call>::n;
     const int64_t n_atoms = atoms_of(unit);
     if (unit.count < 2 || !unit.regular || unit.lanes[0].atoms || W * n_atoms > most_atoms_of_part ||
         !comes_in_parts(unit))
         return false;
     const int64_t most = 2 * W * n_atoms <= atoms_of_part ? atoms_of_part / (2 * W * n_atoms) * 2 * W : W;
+    const PartArrays<Call> arrays(call);
     double buffer[n][3 * (most_atoms_of_part + W)];
     auto lane = unit.lanes[0];
     AnyUnit part = unit;
@@ -61,10 +92,10 @@ HOL_NOINLINE bool in_packed_parts(const Call &call, const AnyUnit &unit, const P
         all.first_atom = there.first_atom;
         Call of_part = call;
         for (int a = 0; a < n; ++a) {
-            const AtomArray &array = call.*arrays[a].array;
+            const AtomArray &array = call.*arrays.of[a].array;
             if (!array.x) continue;
             double *const rows = buffer[a];
-            if (arrays[a].read) {
+            if (arrays.of[a].read) {
                 if (array.packed)
                     __builtin_memcpy(rows, reinterpret_cast<const double *>(array.x) + 3 * all.first_atom,
                                      static_cast<size_t>(count) * (3 * sizeof(double)));
@@ -73,7 +104,7 @@ HOL_NOINLINE bool in_packed_parts(const Call &call, const AnyUnit &unit, const P
             }
             for (int e = 0; e < 3 * W; ++e) rows[3 * count + e] = 0;
             char *const x = reinterpret_cast<char *>(rows);
-            of_part.*arrays[a].array = {
+            of_part.*arrays.of[a].array = {
                 x, x + sizeof(double), x + 2 * sizeof(double), 3 * sizeof(double), array.is_float, true};
         }
         const Tally before = tally;
@@ -87,10 +118,10 @@ HOL_NOINLINE bool in_packed_parts(const Call &call, const AnyUnit &unit, const P
             work(call, same, tally);
             continue;
         }
-        if (moves && tally.n_corrected == before.n_corrected) continue;
+        if (PartArrays<Call>::moves && tally.n_corrected == before.n_corrected) continue;
         for (int a = 0; a < n; ++a) {
-            const AtomArray &array = call.*arrays[a].array;
-            if (!array.x || !arrays[a].written) continue;
+            const AtomArray &array = call.*arrays.of[a].array;
+            if (!array.x || !arrays.of[a].written) continue;
             if (array.packed)
                 __builtin_memcpy(reinterpret_cast<double *>(array.x) + 3 * all.first_atom, buffer[a],
                                  static_cast<size_t>(count) * (3 * sizeof(double)));

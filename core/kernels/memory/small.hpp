@@ -29,25 +29,32 @@ constexpr int largest_boxed_molecule = 3;  // in a box, or not over consecutive 
 
 // One behind the other in a regular unit.
 template <int N>
-struct InRow {
+struct Consecutive {
     static constexpr int bonds = N;
+    int64_t bond, chain;  // of the first one
+    Consecutive(const Unit &unit, int64_t first)
+        : bond(unit.lanes[0].first_bond + N * first), chain(unit.lanes[0].chain + first) {}
+    HOL_STATIC int64_t next(int64_t first, int64_t end) { return end - first >= W ? W : 0; }
+    HOL_FORCED int64_t bond_of(int i) const { return bond + N * i; }
+    HOL_FORCED int64_t chain_of(int i) const { return chain + i; }
+};
+
+// In packed arrays.
+template <int N>
+struct InRow : Consecutive<N> {
     static constexpr bool packed = true, in_row = true, alike = true, loose = false;
     static constexpr int elements = 3 * (N + 1);
     typedef EvenLanes<elements> Lanes;
-    int64_t at, bond, chain;  // of the first one
+    int64_t at;  // the first one
     InRow(const Unit &unit, int64_t first, int64_t)
-        : at(3 * (unit.lanes[0].first_atom + (N + 1) * first)), bond(unit.lanes[0].first_bond + N * first),
-          chain(unit.lanes[0].chain + first) {}
+        : Consecutive<N>(unit, first), at(3 * (unit.lanes[0].first_atom + (N + 1) * first)) {}
     HOL_STATIC double *array(const AtomArray &a) { return base_of(a); }
     HOL_FORCED Lanes lanes_of(double *base) const { return {base + at}; }
     // W atoms behind them can be read.
     HOL_STATIC int64_t end(const Unit &unit, int64_t) {
         return unit.count - (W == 1 || unit.roomy ? 0 : (W + N) / (N + 1));
     }
-    HOL_STATIC int64_t next(int64_t first, int64_t end) { return end - first >= W ? W : 0; }
     HOL_FORCED const double *atom(const double *base, int i, long k) const { return base + at + 3 * ((N + 1) * i + k); }
-    HOL_FORCED int64_t bond_of(int i) const { return bond + N * i; }
-    HOL_FORCED int64_t chain_of(int i) const { return chain + i; }
     HOL_FORCED Source source(const double *base, const Box &box) const {
         return {&box, nullptr, base + at, nullptr, nullptr, N + 1};
     }
@@ -100,20 +107,15 @@ private:
     Lane last_[W];
 };
 
-// One behind the other in a regular unit, in arrays of columns.
+// In columns.
 template <int N>
-struct InColumns {
-    static constexpr int bonds = N;
+struct InColumns : Consecutive<N> {
     static constexpr bool packed = false, in_row = false, alike = true, loose = false;
-    int64_t at, bond, chain;  // of the first one
+    int64_t at;  // the first one
     InColumns(const Unit &unit, int64_t first, int64_t)
-        : at(unit.lanes[0].first_atom + (N + 1) * first), bond(unit.lanes[0].first_bond + N * first),
-          chain(unit.lanes[0].chain + first) {}
+        : Consecutive<N>(unit, first), at(unit.lanes[0].first_atom + (N + 1) * first) {}
     HOL_STATIC Columns array(const AtomArray &a) { return Columns(a); }
     HOL_STATIC int64_t end(const Unit &unit, int64_t) { return unit.count; }
-    HOL_STATIC int64_t next(int64_t first, int64_t end) { return end - first >= W ? W : 0; }
-    HOL_FORCED int64_t bond_of(int i) const { return bond + N * i; }
-    HOL_FORCED int64_t chain_of(int i) const { return chain + i; }
     // As Source.
     struct At {
         const Box *box;

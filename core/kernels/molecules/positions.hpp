@@ -184,8 +184,8 @@ struct PositionsWork {
     NextMolecules &ahead;
 
     template <class V>
-    void block(const MoleculeLane *lane, int used, bool known, double *scratch) const {
-        switch (elimination.way.positions) {
+    void by_way(Way way, const MoleculeLane *lane, int used, bool known, double *scratch) const {
+        switch (way) {
             case Way::sparse_ldl:
                 return by_ldl<V>(lane, used, known, scratch);
             case Way::ring:

@@ -22,6 +22,7 @@ enum class Way : int32_t {
 // By what is asked. Velocities take the way of forces.
 struct Ways {
     Way forces, given, positions, metric;  // given: for right-hand sides of the caller's
+    Way without_paths;                     // of positions where paths won't do
 };
 // Positions of what is in a batch of trees for its forces: the largest trees have another way.
 static inline bool moves_in_batch(Way positions) { return positions == Way::tree || positions == Way::large_tree; }

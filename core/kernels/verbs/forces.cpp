@@ -149,11 +149,6 @@ static int64_t forces_of_molecules(const ForcesCall &call, const Unit &unit, con
     return first;
 }
 
-static bool reads_columns(const ForcesCall &call) {
-    return is_in_columns(call.r) && (!call.v.x || is_in_columns(call.v)) && call.f.x && is_in_columns(call.f) &&
-           (!call.g.x || is_in_columns(call.g)) && !call.tension;
-}
-
 static int64_t small_forces(const ForcesCall &call, const Unit &unit, Block &block, int64_t first, Tally &tally) {
     if (!call.f.x || call.tension || !sums_in_order(unit, call.virial)) return first;
     const bool packed = call.r.packed && (!call.v.x || call.v.packed) && call.f.packed && (!call.g.x || call.g.packed);
@@ -167,13 +162,10 @@ static int64_t small_forces(const ForcesCall &call, const Unit &unit, Block &blo
 
 // Arrays that are not packed. False if nothing has been done.
 static bool forces_in_parts(const ForcesCall &call, const Unit &unit, double *scratch, Tally &tally) {
-    if (reads_columns(call) && fit_columns(unit, call.box.shape != Box::none) && sums_in_order(unit, call.virial))
+    if (call.f.x && !call.tension && reads_columns(call) && fit_columns(unit, call.box.shape != Box::none) &&
+        sums_in_order(unit, call.virial))
         return false;
-    const PartArray<ForcesCall> arrays[] = {{&ForcesCall::r, true, false},
-                                            {&ForcesCall::v, true, false},
-                                            {&ForcesCall::f, true, false},
-                                            {&ForcesCall::g, call.add, true}};
-    return in_packed_parts(call, unit, arrays, false, tally, [=](const ForcesCall &c, const Unit &u, Tally &own) {
+    return in_packed_parts(call, unit, tally, [=](const ForcesCall &c, const Unit &u, Tally &own) {
         for_each_block(c, u, scratch, own, forces_block, small_forces);
     });
 }

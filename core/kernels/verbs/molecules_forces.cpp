@@ -1,5 +1,4 @@
 // Constraint forces of molecules that are no chains, and multipliers for given right-hand sides.
-#include "core/kernels/memory/parts.hpp"
 #include "core/kernels/molecules/forces.hpp"
 #include "core/kernels/molecules/network/verbs.hpp"
 #include "core/kernels/molecules/star/linear.hpp"
@@ -13,11 +12,6 @@ using namespace graph;
 HOL_NOINLINE void solve_triangles(const TriangleLinearVerb &verb, const MoleculeUnit &unit, bool packed, bool columns,
                                   double *scratch) {
     for_each_triangle(verb, unit, packed, scratch, columns);
-}
-
-static bool reads_columns(const ForcesCall &call) {
-    return is_in_columns(call.r) && (!call.v.x || is_in_columns(call.v)) && (!call.f.x || is_in_columns(call.f)) &&
-           (!call.g.x || is_in_columns(call.g));
 }
 
 static void forces_of_blocks(const ForcesCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
@@ -39,16 +33,9 @@ static void forces_of_blocks(const ForcesCall &call, const MoleculeUnit &unit, d
 }
 
 void molecules_forces(const ForcesCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
-    const PartArray<ForcesCall> arrays[] = {{&ForcesCall::r, true, false},
-                                            {&ForcesCall::v, true, false},
-                                            {&ForcesCall::f, true, false},
-                                            {&ForcesCall::g, call.add, true}};
-    const auto blocks = [=](const ForcesCall &c, const MoleculeUnit &u, Tally &own) {
+    molecules_in_parts(call, unit, tally, [=](const ForcesCall &c, const MoleculeUnit &u, Tally &own) {
         forces_of_blocks(c, u, scratch, own);
-    };
-    if (call.r.packed || (reads_triangles_in_columns(unit) && reads_columns(call)) ||
-        !in_packed_parts(call, unit, arrays, false, tally, blocks))
-        blocks(call, unit, tally);
+    });
 }
 
 void molecules_solve(const SolveCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {

@@ -1,5 +1,4 @@
 // Position level of molecules that are no chains.
-#include "core/kernels/memory/parts.hpp"
 #include "core/kernels/molecules/linear.hpp"
 #include "core/kernels/molecules/network/verbs.hpp"
 #include "core/kernels/molecules/positions.hpp"
@@ -42,20 +41,16 @@ int64_t molecules_scratch_bytes(const EliminationPlan &s) {
     return linear > metric ? linear : metric;
 }
 
-// Along paths, where they will do, and with the way of all others where not.
-struct PathsPositionsWork : PositionsWork {
+// Blocks of molecules, those that have paths along these where they will do.
+struct BlockPositionsWork : PositionsWork {
     template <class V>
-    void block(const MoleculeLane *lane, int used, bool, double *scratch) const {
-        if (path_positions(call, elimination, *lane, team, scratch, tally)) return;
-        if (elimination.ldl) return by_ldl<V>(lane, used, false, scratch);
-        if (elimination.type == EliminationPlan::ring) return solve<RingNewton<V>>(lane, used, false, scratch);
-        solve<Newton<V>>(lane, used, false, scratch);
+    void block(const MoleculeLane *lane, int used, bool known, double *scratch) const {
+        const Ways &ways = elimination.way;
+        if (ways.positions != Way::paths) return by_way<V>(ways.positions, lane, used, known, scratch);
+        if (!path_positions(call, elimination, *lane, team, scratch, tally))
+            by_way<V>(ways.without_paths, lane, used, false, scratch);
     }
 };
-
-static bool reads_columns(const PositionsCall &call) {
-    return is_in_columns(call.r) && is_in_columns(call.r_ref) && (!call.v.x || is_in_columns(call.v)) && !call.guess;
-}
 
 static void positions_of_blocks(const PositionsCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
     const Way way = unit.elimination->way.positions;
@@ -65,11 +60,7 @@ static void positions_of_blocks(const PositionsCall &call, const MoleculeUnit &u
     if (way == Way::triangle)
         return for_each_triangle(TrianglePositionsVerb{call, tally}, unit, packed, scratch, reads_columns(call));
     NextMolecules ahead({&call.r_ref, &call.r, &call.v}, call.lambda);
-    const PositionsWork work = {call, *unit.elimination, packed, tally, unit.team, ahead};
-    if (way == Way::paths) {
-        const PathsPositionsWork along_paths = {work};
-        return for_each_block(unit, scratch, ahead, along_paths);
-    }
+    const BlockPositionsWork work = {{call, *unit.elimination, packed, tally, unit.team, ahead}};
     const StarPositionsVerb stars = {call, tally};
     if (way == Way::star && !call.guess &&
         (do_stars<3>(stars, work, unit, scratch) || do_stars<4>(stars, work, unit, scratch)))
@@ -78,14 +69,9 @@ static void positions_of_blocks(const PositionsCall &call, const MoleculeUnit &u
 }
 
 void molecules_positions(const PositionsCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
-    const PartArray<PositionsCall> arrays[] = {
-        {&PositionsCall::r_ref, true, false}, {&PositionsCall::r, true, true}, {&PositionsCall::v, true, true}};
-    const auto blocks = [=](const PositionsCall &c, const MoleculeUnit &u, Tally &own) {
+    molecules_in_parts(call, unit, tally, [=](const PositionsCall &c, const MoleculeUnit &u, Tally &own) {
         positions_of_blocks(c, u, scratch, own);
-    };
-    if (call.r.packed || (reads_triangles_in_columns(unit) && reads_columns(call)) ||
-        !in_packed_parts(call, unit, arrays, true, tally, blocks))
-        blocks(call, unit, tally);
+    });
 }
 
 }  // namespace holonomic::HOL_ISA

@@ -1,5 +1,4 @@
 // Velocity level of molecules that are no chains.
-#include "core/kernels/memory/parts.hpp"
 #include "core/kernels/molecules/network/verbs.hpp"
 #include "core/kernels/molecules/star/linear.hpp"
 #include "core/kernels/molecules/velocities.hpp"
@@ -8,8 +7,6 @@
 namespace holonomic::HOL_ISA {
 
 using namespace graph;
-
-static bool reads_columns(const VelocitiesCall &call) { return is_in_columns(call.r) && is_in_columns(call.v); }
 
 static void velocities_of_blocks(const VelocitiesCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
     if (unit.tree_batches) return batches_velocities(call, unit, scratch, tally);
@@ -25,13 +22,9 @@ static void velocities_of_blocks(const VelocitiesCall &call, const MoleculeUnit 
 }
 
 void molecules_velocities(const VelocitiesCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
-    const PartArray<VelocitiesCall> arrays[] = {{&VelocitiesCall::r, true, false}, {&VelocitiesCall::v, true, true}};
-    const auto blocks = [=](const VelocitiesCall &c, const MoleculeUnit &u, Tally &own) {
+    molecules_in_parts(call, unit, tally, [=](const VelocitiesCall &c, const MoleculeUnit &u, Tally &own) {
         velocities_of_blocks(c, u, scratch, own);
-    };
-    if (call.r.packed || (reads_triangles_in_columns(unit) && reads_columns(call)) ||
-        !in_packed_parts(call, unit, arrays, false, tally, blocks))
-        blocks(call, unit, tally);
+    });
 }
 
 }  // namespace holonomic::HOL_ISA

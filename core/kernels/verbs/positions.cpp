@@ -313,10 +313,6 @@ HOL_NOINLINE int64_t pass_over_right_ones(const PositionsCall &call, const Unit 
 // Bonds of chains that are read from columns: of longer ones copies are a small part of the work.
 constexpr int most_in_columns = 2;
 
-static bool reads_columns(const PositionsCall &call) {
-    return is_in_columns(call.r) && is_in_columns(call.r_ref) && (!call.v.x || is_in_columns(call.v)) && !call.guess;
-}
-
 static inline int64_t small_positions(const PositionsCall &call, const Unit &unit, Block &block, int64_t first,
                                       Tally &tally) {
     if (call.guess || !sums_in_order(unit, call.virial)) return first;
@@ -359,9 +355,7 @@ static void positions_of_blocks(const PositionsCall &call, const Unit &unit, dou
 static bool positions_in_parts(const PositionsCall &call, const Unit &unit, double *scratch, Tally &tally) {
     if (reads_columns(call) && fit_columns<most_in_columns>(unit, false) && sums_in_order(unit, call.virial))
         return false;
-    const PartArray<PositionsCall> arrays[] = {
-        {&PositionsCall::r_ref, true, false}, {&PositionsCall::r, true, true}, {&PositionsCall::v, true, true}};
-    return in_packed_parts(call, unit, arrays, true, tally, [=](const PositionsCall &c, const Unit &u, Tally &own) {
+    return in_packed_parts(call, unit, tally, [=](const PositionsCall &c, const Unit &u, Tally &own) {
         positions_of_blocks(c, u, scratch, own);
     });
 }

@@ -153,8 +153,6 @@ static int64_t velocities_of_molecules(const VelocitiesCall &call, const Unit &u
     return first;
 }
 
-static bool reads_columns(const VelocitiesCall &call) { return is_in_columns(call.r) && is_in_columns(call.v); }
-
 static int64_t small_velocities(const VelocitiesCall &call, const Unit &unit, Block &block, int64_t first,
                                 Tally &tally) {
     if (!sums_in_order(unit, call.virial)) return first;
@@ -171,8 +169,7 @@ static int64_t small_velocities(const VelocitiesCall &call, const Unit &unit, Bl
 static bool velocities_in_parts(const VelocitiesCall &call, const Unit &unit, double *scratch, Tally &tally) {
     if (reads_columns(call) && fit_columns(unit, call.box.shape != Box::none) && sums_in_order(unit, call.virial))
         return false;
-    const PartArray<VelocitiesCall> arrays[] = {{&VelocitiesCall::r, true, false}, {&VelocitiesCall::v, true, true}};
-    return in_packed_parts(call, unit, arrays, false, tally, [=](const VelocitiesCall &c, const Unit &u, Tally &own) {
+    return in_packed_parts(call, unit, tally, [=](const VelocitiesCall &c, const Unit &u, Tally &own) {
         for_each_block(c, u, scratch, own, velocities_block, small_velocities);
     });
 }

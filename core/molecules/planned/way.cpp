@@ -58,10 +58,10 @@ Way given_of(const EliminationPlan &s) {
     return forces == Way::star ? Way::tree : forces;
 }
 
-Way positions_of(const EliminationPlan &s) {
+Way positions_of(const EliminationPlan &s, bool along_paths) {
     if (s.network) return Way::network;
     if (s.type == EliminationPlan::triangle) return Way::triangle;
-    if (s.paths) return Way::paths;
+    if (along_paths) return Way::paths;
     if (s.ldl) return Way::sparse_ldl;
     if (s.n_pieces > 0) return Way::large_tree;
     if (s.type == EliminationPlan::ring && s.n_tree == 0) return Way::ring;
@@ -121,7 +121,7 @@ bool may_have_paths(const EliminationPlan &s) { return !moves_as_batch(s) && s.n
 
 void choose_ways(EliminationPlan &s) {
     s.star_centre = centre_of_star(s);
-    s.way = {forces_of(s), given_of(s), positions_of(s), metric_of(s)};
+    s.way = {forces_of(s), given_of(s), positions_of(s, s.paths), metric_of(s), positions_of(s, false)};
     s.alone = s.network || s.n_bonds > (s.ldl ? largest_graph_in_lanes : largest_in_lanes);
 }
 

@@ -1,6 +1,7 @@
 // Goes through units of triangles, block by block, at each level.
 #pragma once
 
+#include "core/kernels/memory/parts.hpp"
 #include "core/kernels/molecules/blocks.hpp"
 #include "core/kernels/molecules/flagged.hpp"
 #include "core/kernels/molecules/small/twin.hpp"
@@ -117,6 +118,14 @@ struct TriangleWork {
 HOL_INLINE bool reads_triangles_in_columns(const MoleculeUnit &unit) {
     return !small_set && !unit.tree_batches && unit.elimination->way.forces == Way::triangle && unit.regular &&
            !unit.lanes[0].atoms;
+}
+
+// Does molecules in parts, unless their arrays are read as they stand. blocks(call, unit, tally) does the blocks of either.
+template <class Call, class Blocks>
+static inline void molecules_in_parts(const Call &call, const MoleculeUnit &unit, Tally &tally, const Blocks &blocks) {
+    if (call.r.packed || (reads_triangles_in_columns(unit) && reads_columns(call)) ||
+        !in_packed_parts(call, unit, tally, blocks))
+        blocks(call, unit, tally);
 }
 
 template <class Verb>
