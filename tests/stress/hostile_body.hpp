@@ -65,6 +65,9 @@ struct hostile_body {
 /** The molecule with this number; the same on every machine. Every fourth number is of each of the first classes. */
 hostile_body make_hostile_body(std::uint64_t seed);
 
+/** Puts bodies of its class and features in space, and bonds at them (hostile_places.cpp). */
+void place_bodies(hostile_body &m, molecule_dice &d);
+
 /** Of one of the two others (hostile_relations.cpp). */
 hostile_body make_related(std::uint64_t seed);
 hostile_body make_listed(std::uint64_t seed);

@@ -70,6 +70,26 @@ void draw_tree(hostile_molecule &m, molecule_dice &d);
 void draw_ring(hostile_molecule &m, molecule_dice &d, std::int64_t size);
 void draw_graph(hostile_molecule &m, molecule_dice &d);
 
+/** Three directions at right angles. */
+struct turn {
+    point axis[3];
+
+    explicit turn(molecule_dice &d)
+    {
+        axis[0] = d.direction();
+        axis[1] = d.normal_to(axis[0]);
+        for (std::size_t x = 0; x < 3; ++x) {
+            const std::size_t y = (x + 1) % 3, z = (x + 2) % 3;
+            axis[2][x] = axis[0][y] * axis[1][z] - axis[0][z] * axis[1][y];
+        }
+    }
+    /** In long double, so that what is flat stays flat to one rounding. */
+    void apply(const long double *from, long double *to) const
+    {
+        for (std::size_t x = 0; x < 3; ++x) to[x] = axis[0][x] * from[0] + axis[1][x] * from[1] + axis[2][x] * from[2];
+    }
+};
+
 }  // namespace stress
 
 #endif

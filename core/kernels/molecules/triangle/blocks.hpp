@@ -120,7 +120,8 @@ HOL_INLINE bool reads_triangles_in_columns(const MoleculeUnit &unit) {
            !unit.lanes[0].atoms;
 }
 
-// Does molecules in parts, unless their arrays are read as they stand. blocks(call, unit, tally) does the blocks of either.
+// Does molecules in parts, unless their arrays are read as they stand. blocks(call, unit, tally) does the blocks of
+// either.
 template <class Call, class Blocks>
 static inline void molecules_in_parts(const Call &call, const MoleculeUnit &unit, Tally &tally, const Blocks &blocks) {
     if (call.r.packed || (reads_triangles_in_columns(unit) && reads_columns(call)) ||
