@@ -1,5 +1,6 @@
 // One molecule that is no linear chain, copied and with its equations A t = b eliminated by the extended-precision
-// solver (core/kernels/extended), in the baseline's instructions: for what is not in the hot path.
+// solver (core/kernels/extended), in the baseline's instructions: for what is not in the hot path. As in the kernels,
+// four times the precision does what twice loses too many digits of.
 #pragma once
 
 #include <cstdint>
@@ -14,24 +15,27 @@ namespace holonomic {
 class ExtendedMolecule {
 public:
     // Throws std::bad_alloc.
-    ExtendedMolecule(const Molecule &molecule, const AtomArray &r, const Box &box);
-    ~ExtendedMolecule();
+    static std::unique_ptr<const ExtendedMolecule> make(const Molecule &molecule, const AtomArray &r, const Box &box);
+    virtual ~ExtendedMolecule() = default;
 
-    bool good() const;
+    virtual bool good() const = 0;
     // Where it is not good: a bond that depends on others; -1 if the bond vectors are of no use.
-    std::int64_t dependent_bond() const;
+    virtual std::int64_t dependent_bond() const = 0;
 
     // Row i of the inverse of A~ = A over the roots of its diagonal elements. Thread-safe. Throws std::bad_alloc.
-    std::vector<double> inverse_row(std::int64_t i) const;
+    virtual std::vector<double> inverse_row(std::int64_t i) const = 0;
     // The root of a diagonal element of A, as root() 2^exponent().
-    double root(std::int64_t k) const;
-    int exponent(std::int64_t k) const;
+    virtual double root(std::int64_t k) const = 0;
+    virtual int exponent(std::int64_t k) const = 0;
     // Sum of absolute values in the largest row of A~.
-    double largest_row() const;
+    virtual double largest_row() const = 0;
+
+protected:
+    virtual bool lacks_digits() const = 0;
 
 private:
-    struct State;
-    std::unique_ptr<State> state_;
+    static std::unique_ptr<const ExtendedMolecule> in_four_times_the_precision(const Molecule &molecule,
+                                                                               const AtomArray &r, const Box &box);
 };
 
 }  // namespace holonomic

@@ -9,8 +9,8 @@ namespace holonomic {
 
 MoleculeInverse::MoleculeInverse(const Chains &chains, std::int64_t molecule, const AtomArray &r)
     : Inverse(chains.base), number_(molecule), d_(bond_vectors(chains.molecule(molecule), r, chains.box)),
-      solver_(chains.molecule(molecule), r, chains.box) {
-    if (!solver_.good()) refuse(chains, molecule, r);
+      solver_(ExtendedMolecule::make(chains.molecule(molecule), r, chains.box)) {
+    if (!solver_->good()) refuse(chains, molecule, r);
     const Molecule m = chains.molecule(molecule);
     for (std::int64_t i = 0; i < m.n_atoms; ++i) {
         atoms_.push_back(m.atom(i));
@@ -24,11 +24,11 @@ MoleculeInverse::MoleculeInverse(const Chains &chains, std::int64_t molecule, co
 
 // Z = 4 A.
 std::vector<double> MoleculeInverse::find_row(bool physical, std::int64_t i) const {
-    std::vector<double> row = solver_.inverse_row(i);
+    std::vector<double> row = solver_->inverse_row(i);
     for (std::size_t k = 0; physical && k < row.size(); ++k) {
         const std::int64_t j = static_cast<std::int64_t>(k);
-        row[k] =
-            std::scalbn(row[k] / (solver_.root(i) * solver_.root(j)), -2 - solver_.exponent(i) - solver_.exponent(j));
+        row[k] = std::scalbn(row[k] / (solver_->root(i) * solver_->root(j)),
+                             -2 - solver_->exponent(i) - solver_->exponent(j));
     }
     return row;
 }
@@ -71,10 +71,10 @@ double MoleculeInverse::condition() const {
     double largest = 0;
     for (std::int64_t i = 0; i < n_bonds(); ++i) {
         double sum = 0;
-        for (const double x : solver_.inverse_row(i)) sum += std::fabs(x);
+        for (const double x : solver_->inverse_row(i)) sum += std::fabs(x);
         largest = std::max(largest, sum);
     }
-    return solver_.largest_row() * largest;
+    return solver_->largest_row() * largest;
 }
 
 }  // namespace holonomic

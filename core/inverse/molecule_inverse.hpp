@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "core/double_pair.hpp"
@@ -37,7 +38,7 @@ private:
     std::vector<double> w_;            // [n_atoms]
     std::vector<std::size_t> i_, j_;   // [n_bonds] atoms within the molecule
     std::vector<PairVector> d_;        // [n_bonds], exact differences of the coordinates
-    ExtendedMolecule solver_;
+    std::unique_ptr<const ExtendedMolecule> solver_;
 };
 
 }  // namespace holonomic

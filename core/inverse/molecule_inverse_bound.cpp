@@ -60,7 +60,7 @@ std::vector<double> MoleculeInverse::error_bound(const AtomArray &v, const AtomA
     for (std::size_t k = 0; k < n; ++k) {
         const std::int64_t bond = static_cast<std::int64_t>(k);
         const Residual of_bond = residual(v, f, pull, size, k);
-        root[k] = std::scalbn(solver_.root(bond), solver_.exponent(bond));
+        root[k] = std::scalbn(solver_->root(bond), solver_->exponent(bond));
         rest[k] = std::fabs(of_bond.value) + evaluation * of_bond.terms;
         if (!of_bond.exact && rest[k] < 0x1p-900)
             rest[k] += denormal * (1 + size_of(d_[k])) * (1 + w_[i_[k]] + w_[j_[k]]);
@@ -68,7 +68,7 @@ std::vector<double> MoleculeInverse::error_bound(const AtomArray &v, const AtomA
     }
     // t = 2 lambda; one per cent for the rounding of this calculation, which has no differences in it.
     for (std::size_t k = 0; k < n; ++k) {
-        const std::vector<double> row = solver_.inverse_row(static_cast<std::int64_t>(k));
+        const std::vector<double> row = solver_->inverse_row(static_cast<std::int64_t>(k));
         double sum = 0;
         for (std::size_t l = 0; l < n; ++l) sum += std::fabs(row[l]) * rest[l];
         bound[k] = sum > 0 ? 0.505 * sum / root[k] + 0x1p-1074 : 0;

@@ -23,9 +23,9 @@ bool bond_vector(const AtomArray &r, const Box &box, const Molecule &m, std::int
 // Of a molecule that is no linear chain, by the extended-precision solver: the first bond whose pivot vanishes; -1 if
 // none does, -2 if the bond vectors are of no use.
 std::int64_t dependent_bond(const Molecule &molecule, const AtomArray &r, const Box &box) {
-    const ExtendedMolecule solver(molecule, r, box);
-    if (solver.good()) return -1;
-    return solver.dependent_bond() < 0 ? -2 : solver.dependent_bond();
+    const std::unique_ptr<const ExtendedMolecule> solver = ExtendedMolecule::make(molecule, r, box);
+    if (solver->good()) return -1;
+    return solver->dependent_bond() < 0 ? -2 : solver->dependent_bond();
 }
 
 // First bond of a linear chain whose pivot vanishes; -1 if none does, -2 if the numbers overflow before.
