@@ -17,19 +17,19 @@ using holonomic::viewed_array;
 namespace {
 
 inline void set(PositionsCall &call, double dt, double *lambda, int guess) {
-    if (!(dt > 0) || !std::isfinite(dt) || !(dt * dt > 0x1p-1024))  // else 1 / dt^2 is not finite
+    if (!(dt > 0x1p-512) || !(dt < 0x1p512))  // else dt^2 or 1 / dt^2 is not finite
         throw make_error(Status::value, "dt is %g; it must be positive and finite, and so must dt^2 and 1/dt^2", dt);
     if (guess != 0 && guess != 1) throw make_error(Status::value, "guess is %d; it must be 0 or 1", guess);
     if (guess) need(lambda, "lambda, which holds the guess,");
     call.dt = dt;
     call.lambda = lambda;
-    call.guess = guess == 1;
+    call.guess = guess != 0;
 }
 
 // The caller's report: written once there is one, also if the call fails then.
 class ReportTo {
 public:
-    explicit ReportTo(hol_report *to) : to_(to) {}
+    explicit ReportTo(hol_report *to) : to_(to) { found_.made = false; }
     ~ReportTo() {
         if (!to_ || !found_.made) return;
         *to_ = {found_.iterations, found_.n_corrected, found_.n_failed, found_.chain, found_.bond, found_.max_error};
@@ -40,7 +40,7 @@ public:
 
 private:
     hol_report *const to_;
-    holonomic::Report found_{};
+    holonomic::Report found_;
 };
 
 // What is compared with the lengths is told even where the call fails then; most calls compare nothing.

@@ -141,17 +141,23 @@ void project_from(const Chains &chains, PositionsCall &call, const Reference *re
     call.max_iterations = chains.max_iterations;
     put_box(chains.box, call.box);
     put_box(box_ref, call.box_ref);
-    const AtomArray r_ref = call.r_ref;
-    if (call.r_ref.x == call.r.x && moves_in_parts(chains.plan())) call.r_ref = copy_of(r_ref, chains);
     const double worst_trial = call.worst_trial;
     call.far_trial = std::min(worst_trial, far_from_lengths);
     call.worst_trial = std::min(worst_trial, far_from_lengths_of_chains);
+    const bool copies = call.r_ref.x == call.r.x && moves_in_parts(chains.plan());
+    AtomArray kept;
+    if (copies) {
+        kept = call.r_ref;
+        call.r_ref = copy_of(kept, chains);
+    }
     Apart apart(chains);
     Tally tally = execute(chains, PositionsWork(call, apart, reference));
     apart.put_back();
-    call.r_ref = r_ref;
-    call.far_trial = call.worst_trial = worst_trial;
-    if (tally.n_bad > 0) tally = finish_long_steps(chains, call, reference, tally);
+    if (copies) call.r_ref = kept;
+    if (tally.n_bad > 0) {
+        call.far_trial = call.worst_trial = worst_trial;
+        tally = finish_long_steps(chains, call, reference, tally);
+    }
     clear_unconstrained(chains, call.lambda);
     if (report) *report = report_of(chains, tally);
     if (tally.n_bad > 0) throw_error_of(chains, tally, call, reference, box_ref);

@@ -51,8 +51,9 @@ std::int64_t choose_parent(molecule_dice &d, int style, std::int64_t n)
 
 void draw_tree(hostile_molecule &m, molecule_dice &d)
 {
-    const std::int64_t n = d.chance(0.02) ? d.whole(100, 300) : d.whole(1, 40);
-    const bool bushy = m.seed >= first_bush && (m.seed < first_of_soaks || m.seed / 128 % 4 == 0);
+    const bool soaks = m.seed >= first_of_soaks, star = soaks ? m.seed / 128 % 4 == 1 : m.seed >= first_star;
+    const bool bushy = soaks ? m.seed / 128 % 4 == 0 : m.seed >= first_bush;
+    const std::int64_t n = star ? d.whole(3, 5) : d.chance(0.02) ? d.whole(100, 300) : d.whole(1, 40);
     const int style = bushy ? 2 : static_cast<int>(d.whole(0, 2));
     const int valence = static_cast<int>(bushy ? d.whole(8, 40) : d.whole(2, 6));
     const double aligned = m.features & ALIGNED ? d.uniform(0.2, 1) : 0, fold = d.chance(0.5) ? 0 : d.uniform(0, 1);
@@ -61,7 +62,7 @@ void draw_tree(hostile_molecule &m, molecule_dice &d)
     std::vector<point> along{d.direction()};
     add_atom(m, {0, 0, 0});
     while (static_cast<std::int64_t>(m.pairs.size()) < 2 * n) {
-        const std::int64_t parent = choose_parent(d, style, m.n_atoms());
+        const std::int64_t parent = star ? 0 : choose_parent(d, style, m.n_atoms());
         if (bonds[at(parent)] >= valence) continue;
         point u = d.direction();
         if (d.chance(aligned)) {

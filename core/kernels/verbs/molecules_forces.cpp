@@ -28,7 +28,9 @@ static void forces_of_blocks(const ForcesCall &call, const MoleculeUnit &unit, d
     }
     NextMolecules ahead({&call.r, &call.v, &call.f, &call.g}, call.lambda);
     const LinearWork<ForcesCall> work = {call, *unit.elimination, way, packed, tally, unit.team, ahead};
-    if (way == Way::star && do_stars<3>(StarForcesVerb{call, tally}, work, unit, scratch)) return;
+    const StarForcesVerb stars = {call, tally};
+    if (way == Way::star && (do_stars<3>(stars, work, unit, scratch) || do_stars<4>(stars, work, unit, scratch)))
+        return;
     for_each_block(unit, scratch, ahead, work);
 }
 

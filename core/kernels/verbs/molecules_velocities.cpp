@@ -17,7 +17,9 @@ static void velocities_of_blocks(const VelocitiesCall &call, const MoleculeUnit 
         return for_each_triangle(TriangleVelocitiesVerb(call, tally), unit, packed, scratch, reads_columns(call));
     NextMolecules ahead({&call.r, &call.v}, call.lambda);
     const LinearWork<VelocitiesCall> work = {call, *unit.elimination, way, packed, tally, unit.team, ahead};
-    if (way == Way::star && do_stars<3>(StarVelocitiesVerb{call, tally}, work, unit, scratch)) return;
+    const StarVelocitiesVerb stars = {call, tally};
+    if (way == Way::star && (do_stars<3>(stars, work, unit, scratch) || do_stars<4>(stars, work, unit, scratch)))
+        return;
     for_each_block(unit, scratch, ahead, work);
 }
 

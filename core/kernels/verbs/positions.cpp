@@ -351,17 +351,18 @@ static void positions_of_blocks(const PositionsCall &call, const Unit &unit, dou
         small_positions, false);
 }
 
-// Arrays that are not packed. False if nothing has been done.
-static bool positions_in_parts(const PositionsCall &call, const Unit &unit, double *scratch, Tally &tally) {
-    if (reads_columns(call) && fit_columns<most_in_columns>(unit, false) && sums_in_order(unit, call.virial))
-        return false;
-    return in_packed_parts(call, unit, tally, [=](const PositionsCall &c, const Unit &u, Tally &own) {
+// Arrays that are not packed.
+HOL_NOINLINE void positions_in_parts(const PositionsCall &call, const Unit &unit, double *scratch, Tally &tally) {
+    const bool in_columns =
+        reads_columns(call) && fit_columns<most_in_columns>(unit, false) && sums_in_order(unit, call.virial);
+    const auto blocks = [=](const PositionsCall &c, const Unit &u, Tally &own) {
         positions_of_blocks(c, u, scratch, own);
-    });
+    };
+    if (in_columns || !in_packed_parts(call, unit, tally, blocks)) positions_of_blocks(call, unit, scratch, tally);
 }
 
 void positions(const PositionsCall &call, const Unit &unit, double *scratch, Tally &tally) {
-    if (!call.r.packed && positions_in_parts(call, unit, scratch, tally)) return;
+    if (__builtin_expect(!call.r.packed, 0)) return positions_in_parts(call, unit, scratch, tally);
     positions_of_blocks(call, unit, scratch, tally);
 }
 

@@ -48,7 +48,7 @@ Way forces_of(const EliminationPlan &s) {
     if (s.n_pieces > 0) return Way::large_tree;
     if (s.ldl) return Way::sparse_ldl;
     if (s.type == EliminationPlan::ring && s.n_tree == 0) return Way::ring;
-    return s.star_centre >= 0 && s.n_bonds == 3 ? Way::star : Way::tree;
+    return s.star_centre >= 0 ? Way::star : Way::tree;
 }
 
 // Arms and stars save what right-hand sides that are given don't need.

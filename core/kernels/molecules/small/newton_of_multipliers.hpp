@@ -16,13 +16,15 @@ namespace holonomic::HOL_ISA::graph {
 constexpr double small_enough = 1e-11;
 
 // A model of N bonds has: sigma[N], per_a2[N];  change(tau), with q[N];  inverse() of 2 M for tau = 0, and
-// inverse(change) for the bonds as changed;  solve(inverse, y, tau).
+// inverse(change) for the bonds as changed;  solve(inverse, y, tau). tau has `unknowns` elements, the multipliers
+// first; what comes after them is linear in y, too.
 
 // Two solves from tau, in all lanes. The one with new factors squares the error, the other with the same factors takes
 // it to the third power. Returns what the first has left of a^2.
 template <int N, class V, class Model>
 HOL_INLINE V solve_twice(const Model &x, V *tau) {
-    V y[N], next[N], rest[N];
+    constexpr int unknowns = Model::unknowns;
+    V y[N], next[unknowns], step[unknowns], rest[unknowns];
     // 2 M tau = sigma + q, linear about the last tau: 2 M' tau = sigma - q. What that leaves is q of the change.
     auto p = x.change(tau);
     const auto f = x.inverse(p);
@@ -30,14 +32,14 @@ HOL_INLINE V solve_twice(const Model &x, V *tau) {
     for (int k = 0; k < N; ++k) y[k] = x.sigma[k] - p.q[k];
     Model::solve(f, y, next);
     HOL_UNROLL
-    for (int k = 0; k < N; ++k) y[k] = next[k] - tau[k];
-    p = x.change(y);
+    for (int k = 0; k < unknowns; ++k) step[k] = next[k] - tau[k];
+    p = x.change(step);
     Model::solve(f, p.q, rest);
     V left = p.q[0] * x.per_a2[0];
     HOL_UNROLL
     for (int k = 1; k < N; ++k) left = max(p.q[k] * x.per_a2[k], left);
     HOL_UNROLL
-    for (int k = 0; k < N; ++k) tau[k] = next[k] + rest[k];
+    for (int k = 0; k < unknowns; ++k) tau[k] = next[k] + rest[k];
     return left;
 }
 
@@ -52,12 +54,12 @@ HOL_INLINE int64_t solve_for_multipliers(const Model &x, V *tau, MaskOf<V> &acti
     int64_t solves = 3;
     active = active & ~less(solve_twice<N>(x, tau), Width<V>::all(most < solves ? 0 : small_enough));
     for (; __builtin_expect(any(active), 0) && solves < 9 && solves + 2 <= most; solves += 2) {
-        V before[N];
+        V before[Model::unknowns];
         HOL_UNROLL
-        for (int k = 0; k < N; ++k) before[k] = tau[k];
+        for (int k = 0; k < Model::unknowns; ++k) before[k] = tau[k];
         const V left = solve_twice<N>(x, tau);
         HOL_UNROLL
-        for (int k = 0; k < N; ++k) tau[k] = select(active, tau[k], before[k]);
+        for (int k = 0; k < Model::unknowns; ++k) tau[k] = select(active, tau[k], before[k]);
         active = active & ~less(left, Width<V>::all(small_enough));
     }
     return solves;

@@ -69,11 +69,14 @@ struct StarAtoms {
 template <int N, class V>
 struct StarMasses {
     V w[N + 1] = {};
+    V share[N == 4 ? N : 1] = {};  // w_k / (w_k + w_0)
     // The atom `centre` of a molecule is the centre.
     void set(const MoleculeLane *lane, int used, int centre) {
         for (int k = 0; k <= N; ++k)
             for (int i = 0; i < Width<V>::lanes; ++i)
                 Width<V>::set(w[k], i, lane[i < used ? i : 0].w[k == 0 ? centre : k <= centre ? k - 1 : k]);
+        if constexpr (N == 4)
+            for (int k = 0; k < N; ++k) share[k] = w[k + 1] / (w[k + 1] + w[0]);
     }
 };
 

@@ -7,6 +7,7 @@
 #include "core/kernels/molecules/image.hpp"
 #include "core/kernels/molecules/small/newton_of_multipliers.hpp"
 #include "core/kernels/molecules/star/atoms.hpp"
+#include "core/kernels/molecules/star/four_bonds.hpp"
 #include "core/kernels/molecules/tree/newton_joint.hpp"
 
 namespace holonomic::HOL_ISA::graph {
@@ -15,6 +16,7 @@ namespace holonomic::HOL_ISA::graph {
 template <int N, class V>
 struct StarKind : StarMasses<N, V> {
     V a2[N], per_a2[N], a_min, a_max, per_a_min;
+    unsigned light;  // lanes whose centre is light to Newton's method
     void set(const MoleculeLane *lane, int used, int centre) {
         StarMasses<N, V>::set(lane, used, centre);
         a_min = Width<V>::all(1e300);
@@ -28,6 +30,12 @@ struct StarKind : StarMasses<N, V> {
             per_a2[k] = Width<V>::all(1) / a2[k];
         }
         per_a_min = Width<V>::all(1) / a_min;
+        light = 0;
+        for (int i = 0; N == 4 && i < used; ++i) {
+            double least = Width<V>::get(this->w[1], i);
+            for (int k = 2; k <= N; ++k) least = min(Width<V>::get(this->w[k], i), least);
+            light |= unsigned(Width<V>::get(this->w[0], i) > least_light_to_move * least) << i;
+        }
     }
 };
 
@@ -48,29 +56,23 @@ struct SmallInverse {
 // In closed form, with one division.
 template <class V>
 struct SmallInverse<3, V> {
-    V adj[3][3], r;
+    Inverse3<V> closed;
     HOL_STATIC SmallInverse of(const V m[3][3]) {
         SmallInverse f;
-        HOL_UNROLL
-        for (int k = 0; k < 3; ++k) {
-            HOL_UNROLL
-            for (int l = 0; l < 3; ++l) {
-                const int a = (l + 1) % 3, b = (l + 2) % 3, c = (k + 1) % 3, d = (k + 2) % 3;
-                f.adj[k][l] = mul_add(m[a][c], m[b][d], -(m[a][d] * m[b][c]));
-            }
-        }
-        f.r = Width<V>::all(1) / mul_add(m[0][2], f.adj[2][0], mul_add(m[0][1], f.adj[1][0], m[0][0] * f.adj[0][0]));
+        f.closed.set(m);
         return f;
     }
     HOL_STATIC void solve(const SmallInverse &f, const V *y, V *t) {
-        HOL_UNROLL
-        for (int k = 0; k < 3; ++k)
-            t[k] = f.r * mul_add(f.adj[k][2], y[2], mul_add(f.adj[k][1], y[1], f.adj[k][0] * y[0]));
+        const Vector3<V> x = f.closed.times({y[0], y[1], y[2]});
+        t[0] = x.x;
+        t[1] = x.y;
+        t[2] = x.z;
     }
 };
 
 template <int N, class V>
 struct StarModel {
+    static constexpr int unknowns = N;
     const StarKind<N, V> &m;
     const V *per_a2;
     V B[N][N];  // b_k . b_l
@@ -137,6 +139,86 @@ struct StarModel {
         return SmallInverse<N, V>::of(M);
     }
     HOL_STATIC void solve(const SmallInverse<N, V> &f, const V *y, V *tau) { SmallInverse<N, V>::solve(f, y, tau); }
+
+    // The sum of tau_k b_k, and the largest move that a bond makes.
+    HOL_STATIC Vector3<V> pull(const V *tau, const Vector3<V> *b) {
+        Vector3<V> sum = tau[0] * b[0];
+        HOL_UNROLL
+        for (int k = 1; k < N; ++k) sum = add_times(sum, tau[k], b[k]);
+        return sum;
+    }
+    HOL_STATIC V largest_move(const StarKind<N, V> &m, const V *tau) {
+        V largest = {};
+        HOL_UNROLL
+        for (int k = 0; k < N; ++k) largest = max(max(m.w[0], m.w[k + 1]) * abs(tau[k]), largest);
+        return largest * m.a_max;
+    }
+};
+
+// Four bonds at a light centre, by four_bonds.hpp. The sum p of tau_k b_k is an unknown, too: it is small, its terms
+// are not.
+template <class V>
+struct LightStarModel {
+    static constexpr int N = 4, unknowns = N + 3;
+    const StarKind<N, V> &m;
+    const V *per_a2;
+    const Vector3<V> *const b, *const D;
+    const V *sigma;
+
+    inline HOL_FORCED LightStarModel(const StarKind<N, V> &kind, const Vector3<V> *reference, const Vector3<V> *now,
+                                     const V *left)
+        : m(kind), per_a2(kind.per_a2), b(reference), D(now), sigma(left) {}
+
+    // P_k and |P_k|^2.
+    struct Change {
+        Vector3<V> P[N];
+        V q[N];
+    };
+    inline HOL_FORCED Change change(const V *tau) const {
+        Change c;
+        const Vector3<V> of_centre = m.w[0] * pull(tau, b);
+        HOL_UNROLL
+        for (int k = 0; k < N; ++k) {
+            const Vector3<V> less = add_times(of_centre, m.w[k + 1] * tau[k], b[k]);
+            c.P[k] = {-less.x, -less.y, -less.z};
+            c.q[k] = dot(less, less);
+        }
+        return c;
+    }
+
+    // Of M.
+    inline HOL_FORCED FourBonds<V> inverse() const {
+        FourBonds<V> f;
+        f.set(m.w, D, b);
+        return f;
+    }
+    inline HOL_FORCED FourBonds<V> inverse(const Change &c) const {
+        Vector3<V> now[N];
+        HOL_UNROLL
+        for (int k = 0; k < N; ++k) now[k] = D[k] + c.P[k];
+        FourBonds<V> f;
+        f.set(m.w, now, b);
+        return f;
+    }
+    HOL_STATIC void solve(const FourBonds<V> &f, const V *y, V *tau) {
+        V half[N];
+        Vector3<V> p;
+        HOL_UNROLL
+        for (int k = 0; k < N; ++k) half[k] = 0.5 * y[k];
+        f.solve(half, tau, p);
+        tau[4] = p.x;
+        tau[5] = p.y;
+        tau[6] = p.z;
+    }
+
+    HOL_STATIC Vector3<V> pull(const V *tau, const Vector3<V> *) { return {tau[4], tau[5], tau[6]}; }
+    HOL_STATIC V largest_move(const StarKind<N, V> &m, const V *tau) {
+        V of_bonds = {};
+        HOL_UNROLL
+        for (int k = 0; k < N; ++k) of_bonds = max(m.w[k + 1] * abs(tau[k]), of_bonds);
+        const V of_centre = max(max(abs(tau[4]), abs(tau[5])), abs(tau[6]));
+        return max(m.w[0] * of_centre, of_bonds * m.a_max);
+    }
 };
 
 }  // namespace holonomic::HOL_ISA::graph

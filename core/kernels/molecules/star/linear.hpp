@@ -1,16 +1,20 @@
-// Forces and velocities of stars of three bonds, CH3 and NH3, in registers: the equations of joint.hpp with the centre
-// as the root and S^-1 in closed form. Lanes for which that is not good enough go the general way.
+// Forces and velocities of stars of three and four bonds, CH3, NH3 and CH4, in registers: the equations of joint.hpp
+// with the centre as the root and S^-1 in closed form. Lanes for which that is not good enough go the general way.
 #pragma once
 
 #include "core/kernels/molecules/star/atoms.hpp"
+#include "core/kernels/molecules/star/four_bonds.hpp"
 #include "core/kernels/molecules/store.hpp"
 #include "core/kernels/molecules/tree/joint.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 
+template <int N, class V>
+struct Star;
+
 // Bond vectors from the centre, and S = diag(w_k q_k) + w_0 D^T D with its inverse adj / det.
 template <class V>
-struct Star {
+struct Star<3, V> {
     const StarMasses<3, V> &m;
     Vector3<V> d[3];
     V q[3], adj[3][3], r;  // r = 1 / det
@@ -41,7 +45,7 @@ struct Star {
         margin = min(mul_add(Width<V>::all(-least_part), whole, det), margin);
         r = Width<V>::all(1) / det;
     }
-    inline HOL_FORCED void solve(const V *y, V *t) const {
+    inline HOL_FORCED void solve(const V *y, V *t) {
         HOL_UNROLL
         for (int k = 0; k < 3; ++k) t[k] = r * mul_add(adj[k][2], y[2], mul_add(adj[k][1], y[1], adj[k][0] * y[0]));
     }
@@ -75,11 +79,61 @@ struct Star {
     }
 };
 
-template <class V, class Atoms>
+// Four bonds, as four_bonds.hpp has them.
+template <class V>
+struct Star<4, V> {
+    const StarMasses<4, V> &m;
+    Vector3<V> d[4], p;  // p = sum of t_k d_k
+    V q[4];
+    FourBonds<V> equations;
+
+    inline HOL_FORCED Star(const StarMasses<4, V> &masses) : m(masses) {}
+    inline HOL_FORCED void invert() {
+        HOL_UNROLL
+        for (int k = 0; k < 4; ++k) q[k] = dot(d[k], d[k]);
+        equations.set(m.w, d, d);
+    }
+    inline HOL_FORCED void solve(const V *y, V *t) { equations.solve(y, t, p); }
+
+    // The lanes in which t of y is good. (S^-1)_kk is at least 1 / S_kk, and at most 1 / a_k.
+    inline HOL_FORCED MaskOf<V> good(const V *y, const V *t) const {
+        const V *const a = equations.a;
+        V T2 = q[0] * (t[0] * t[0]), sum = t[0];
+        HOL_UNROLL
+        for (int k = 1; k < 4; ++k) {
+            T2 = mul_add(q[k], t[k] * t[k], T2);
+            sum = sum + t[k];
+        }
+        const V shared = (m.w[0] * m.w[0]) * ((1 / (most_cancelled * most_cancelled)) * T2);
+        V least = shared;
+        HOL_UNROLL
+        for (int k = 0; k < 4; ++k) {
+            const V of_one = equations.per_a[k], alone = y[k] * (m.share[k] * of_one);
+            const V left = mul_add(-shared, q[k] * (of_one * of_one), mul_add(t[k], t[k], alone * alone));
+            least = k == 0 ? left : min(left, least);
+        }
+        MaskOf<V> fine = ~less(least, V{});
+        if (__builtin_expect(any(equations.light), 0))
+            fine = (fine & ~equations.light) | (equations.light & equations.is_good_if_light(q, y));
+        return finite(sum) & fine &
+               ordinary_squares(min(min(a[0], a[1]), min(a[2], a[3])), max(max(a[0], a[1]), max(a[2], a[3])));
+    }
+
+    inline HOL_FORCED void pull(const V *t, Vector3<V> *g) const {
+        g[0] = p;
+        HOL_UNROLL
+        for (int k = 0; k < 4; ++k) {
+            const Vector3<V> of_bond = t[k] * d[k];
+            g[k + 1] = {-of_bond.x, -of_bond.y, -of_bond.z};
+        }
+    }
+};
+
+template <int N, class V, class Atoms>
 HOL_INLINE void write_star_bonds(const Atoms &atoms, const V *t, double factor, double *out, unsigned which) {
-    V value[3];
+    V value[N];
     HOL_UNROLL
-    for (int k = 0; k < 3; ++k) value[k] = mul_add(Width<V>::all(factor), t[k], V{});
+    for (int k = 0; k < N; ++k) value[k] = mul_add(Width<V>::all(factor), t[k], V{});
     atoms.write_bonds(out, value, which);
 }
 
@@ -91,12 +145,12 @@ struct StarForcesVerb {
     Tally &tally;
 
     // Returns the lanes that are done.
-    template <Inlined where, class V>
-    __attribute__((noinline)) unsigned solve(const StarAtoms<where, 3, V> &atoms, const MoleculeLane *,
-                                             const StarMasses<3, V> &m, MaskOf<V> in_use) const {
-        Vector3<V> r[4];
-        V y[3], t[3];
-        Star<V> star(m);
+    template <Inlined where, int N, class V>
+    __attribute__((noinline)) unsigned solve(const StarAtoms<where, N, V> &atoms, const MoleculeLane *,
+                                             const StarMasses<N, V> &m, MaskOf<V> in_use) const {
+        Vector3<V> r[N + 1];
+        V y[N], t[N];
+        Star<N, V> star(m);
         atoms.read(call.r, r);
         atoms.take_bonds(r, call.box, star.d);
         star.invert();
@@ -104,34 +158,36 @@ struct StarForcesVerb {
         star.solve(y, t);
         const unsigned good = bits(in_use & star.good(y, t));
         if (!good) return good;
-        if (call.lambda) write_star_bonds(atoms, t, 0.5, call.lambda, good);
+        if (call.lambda) write_star_bonds<N>(atoms, t, 0.5, call.lambda, good);
         if (call.tension) {
-            const V T[3] = {t[0] * sqrt(star.q[0]), t[1] * sqrt(star.q[1]), t[2] * sqrt(star.q[2])};
-            write_star_bonds(atoms, T, 1, call.tension, good);
+            V T[N];
+            HOL_UNROLL
+            for (int k = 0; k < N; ++k) T[k] = t[k] * sqrt(star.q[k]);
+            write_star_bonds<N>(atoms, T, 1, call.tension, good);
         }
-        if (call.virial) add_bonds_virial<3>(star.d, t, 1, good, tally);
+        if (call.virial) add_bonds_virial<N>(star.d, t, 1, good, tally);
         if (!call.g.x) return good;
-        Vector3<V> g[4];
+        Vector3<V> g[N + 1];
         star.pull(t, g);
         if (call.add) {
             atoms.read(call.g, r);
             HOL_UNROLL
-            for (int i = 0; i < 4; ++i) g[i] = r[i] + g[i];
+            for (int i = 0; i <= N; ++i) g[i] = r[i] + g[i];
         }
         atoms.write(call.g, g, good);
         return good;
     }
 
     // As load.hpp makes them.
-    template <Inlined where, class V>
-    inline HOL_FORCED void find_sides(const StarAtoms<where, 3, V> &atoms, const Star<V> &star, V *y) const {
-        Vector3<V> a[4];
+    template <Inlined where, int N, class V>
+    inline HOL_FORCED void find_sides(const StarAtoms<where, N, V> &atoms, const Star<N, V> &star, V *y) const {
+        Vector3<V> a[N + 1];
         HOL_UNROLL
-        for (int k = 0; k < 3; ++k) y[k] = V{};
+        for (int k = 0; k < N; ++k) y[k] = V{};
         if (call.v.x) {
             atoms.read(call.v, a);
             HOL_UNROLL
-            for (int k = 0; k < 3; ++k) {
+            for (int k = 0; k < N; ++k) {
                 const Vector3<V> dv = a[k + 1] - a[0];
                 y[k] = dot(dv, dv);
             }
@@ -140,7 +196,7 @@ struct StarForcesVerb {
             atoms.read(call.f, a);
             const Vector3<V> first = (-star.m.w[0]) * a[0];
             HOL_UNROLL
-            for (int k = 0; k < 3; ++k) {
+            for (int k = 0; k < N; ++k) {
                 const Vector3<V> d = star.d[k], f = add_times(first, star.m.w[k + 1], a[k + 1]);
                 y[k] = mul_add(d.z, f.z, mul_add(d.y, f.y, mul_add(d.x, f.x, y[k])));
             }
@@ -157,12 +213,12 @@ struct StarVelocitiesVerb {
     Tally &tally;
 
     // Returns the lanes that are done.
-    template <Inlined where, class V>
-    __attribute__((noinline)) unsigned solve(const StarAtoms<where, 3, V> &atoms, const MoleculeLane *,
-                                             const StarMasses<3, V> &m, MaskOf<V> in_use) const {
-        Vector3<V> r[4], v[4];
-        V y[3], t[3], again[3];
-        Star<V> star(m);
+    template <Inlined where, int N, class V>
+    __attribute__((noinline)) unsigned solve(const StarAtoms<where, N, V> &atoms, const MoleculeLane *,
+                                             const StarMasses<N, V> &m, MaskOf<V> in_use) const {
+        Vector3<V> r[N + 1], v[N + 1];
+        V y[N], t[N], again[N];
+        Star<N, V> star(m);
         atoms.read(call.r, r);
         atoms.take_bonds(r, call.box, star.d);
         star.invert();
@@ -171,8 +227,8 @@ struct StarVelocitiesVerb {
         star.solve(y, t);
         const unsigned good = bits(in_use & star.good(y, t));
         if (!good) return good;
-        if (call.lambda) write_star_bonds(atoms, t, 0.5, call.lambda, good);
-        if (call.virial) add_bonds_virial<3>(star.d, t, 1, good, tally);
+        if (call.lambda) write_star_bonds<N>(atoms, t, 0.5, call.lambda, good);
+        if (call.virial) add_bonds_virial<N>(star.d, t, 1, good, tally);
         move(star, t, v);
         if (!call.v.is_float) {
             find_rates(call.strain, star, v, y);
@@ -183,18 +239,18 @@ struct StarVelocitiesVerb {
         return good;
     }
 
-    template <class V>
-    HOL_STATIC void find_rates(const double *strain, const Star<V> &star, const Vector3<V> *v, V *y) {
+    template <int N, class V>
+    HOL_STATIC void find_rates(const double *strain, const Star<N, V> &star, const Vector3<V> *v, V *y) {
         HOL_UNROLL
-        for (int k = 0; k < 3; ++k) y[k] = dot(star.d[k], v[k + 1] - v[0]);
-        for (int k = 0; k < 3 && strain; ++k) y[k] = y[k] + stretching(strain, star.d[k]);
+        for (int k = 0; k < N; ++k) y[k] = dot(star.d[k], v[k + 1] - v[0]);
+        for (int k = 0; k < N && strain; ++k) y[k] = y[k] + stretching(strain, star.d[k]);
     }
-    template <class V>
-    HOL_STATIC void move(const Star<V> &star, const V *t, Vector3<V> *v) {
-        Vector3<V> g[4];
+    template <int N, class V>
+    HOL_STATIC void move(const Star<N, V> &star, const V *t, Vector3<V> *v) {
+        Vector3<V> g[N + 1];
         star.pull(t, g);
         HOL_UNROLL
-        for (int i = 0; i < 4; ++i) v[i] = add_times(v[i], star.m.w[i], g[i]);
+        for (int i = 0; i <= N; ++i) v[i] = add_times(v[i], star.m.w[i], g[i]);
     }
 };
 

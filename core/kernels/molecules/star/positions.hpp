@@ -7,7 +7,7 @@
 
 namespace holonomic::HOL_ISA::graph {
 
-template <Inlined where, int N, class V>
+template <Inlined where, int N, class V, class Model = StarModel<N, V>>
 struct StarPositions {
     const PositionsCall &call;
     const StarAtoms<where, N, V> &atoms;
@@ -30,10 +30,7 @@ struct StarPositions {
 
     // Displacements by tau, and the bonds as they move.
     inline HOL_FORCED void move(const V *tau, const Vector3<V> *b, Vector3<V> *shift, Vector3<V> *D) const {
-        Vector3<V> pull = tau[0] * b[0];
-        HOL_UNROLL
-        for (int k = 1; k < N; ++k) pull = add_times(pull, tau[k], b[k]);
-        shift[0] = m.w[0] * pull;
+        shift[0] = m.w[0] * Model::pull(tau, b);
         HOL_UNROLL
         for (int k = 0; k < N; ++k) {
             shift[k + 1] = (-m.w[k + 1] * tau[k]) * b[k];
@@ -43,16 +40,13 @@ struct StarPositions {
 
     // Lanes in which the pulls on an atom are so large that their rounding exceeds that of the coordinates.
     inline HOL_FORCED MaskOf<V> coarse_moves(const V *tau, V largest) const {
-        V pull = {};
-        HOL_UNROLL
-        for (int k = 0; k < N; ++k) pull = max(max(m.w[0], m.w[k + 1]) * abs(tau[k]), pull);
-        return less(0.25 * (largest + m.a_min), pull * m.a_max);
+        return less(0.25 * (largest + m.a_min), Model::largest_move(m, tau));
     }
 
     // The lanes of `in_use`. Returns those that are done.
     __attribute__((noinline)) unsigned solve(MaskOf<V> in_use) const {
         Vector3<V> r[N + 1], b[N], D[N], shift[N + 1];
-        V sigma[N], tau[N];
+        V sigma[N], tau[Model::unknowns];
         atoms.read(call.r_ref, r);
         atoms.take_bonds(r, call.box_ref, b);
         atoms.read(call.r, r);
@@ -70,11 +64,11 @@ struct StarPositions {
             return bits(untouched);
         }
         MaskOf<V> unsure = wanted;
-        const StarModel<N, V> model(m, b, D, sigma);
+        const Model model(m, b, D, sigma);
         const int64_t solves = solve_for_multipliers<N>(model, tau, unsure, call.max_iterations);
         if (__builtin_expect(bits(wanted) != all_of<V>, 0)) {
             HOL_UNROLL
-            for (int k = 0; k < N; ++k) tau[k] = keep(wanted, tau[k]);
+            for (int k = 0; k < Model::unknowns; ++k) tau[k] = keep(wanted, tau[k]);
         }
         move(tau, b, shift, D);
         V left[N];
@@ -125,7 +119,16 @@ struct StarPositionsVerb {
     template <Inlined where, int N, class V>
     unsigned solve(const StarAtoms<where, N, V> &atoms, const MoleculeLane *lane, const StarKind<N, V> &kind,
                    MaskOf<V> in_use) const {
-        return StarPositions<where, N, V>{call, atoms, lane, kind, tally}.solve(in_use);
+        const StarPositions<where, N, V> ordinary = {call, atoms, lane, kind, tally};
+        if constexpr (N == 4) {
+            if (__builtin_expect(kind.light != 0, 0)) {
+                const StarAtoms<anywhere, N, V> any_atoms = {atoms.at, atoms.centre};
+                const StarPositions<anywhere, N, V, LightStarModel<V>> light = {call, any_atoms, lane, kind, tally};
+                const MaskOf<V> lights = Width<V>::of_bits(kind.light), others = in_use & ~lights;
+                return light.solve(in_use & lights) | (any(others) ? ordinary.solve(others) : 0);
+            }
+        }
+        return ordinary.solve(in_use);
     }
 };
 

@@ -9,6 +9,7 @@ namespace holonomic::HOL_ISA::graph {
 
 template <class V>
 struct TriangleModel {
+    static constexpr int unknowns = 3;
     const TriangleMasses<V> &m;
     const V *per_a2;
     const V *sigma;
