@@ -40,11 +40,11 @@ HOL_INLINE double most_cancelled2(int32_t n_bonds) {
 // (53b), atoms with many bonds: the most that tr M tr N may be, which is 9 where M is a multiple of 1.
 constexpr double most_uneven = 128, least_uneven = 9;
 
-// Four bonds at one atom (53d), (53e): a centre whose inverse mass is so many times that of another atom is light.
-// Newton's method corrects itself, and takes elimination a little further. The two parts of a multiplier, added without
-// signs, may be so many times its scale. tr G tr G^-1 is 9 where G is a multiple of 1; beyond this too much is lost.
+// Four bonds at one atom (53d): a centre whose inverse mass is so many times that of another atom is light. Newton's
+// method corrects itself, and takes elimination a little further. The terms of a multiplier, added without signs, may
+// be so many times its scale. tr M tr N is 9 where M is a multiple of 1; beyond this too much is lost.
 constexpr double least_light = 3, least_light_to_move = 8;
-constexpr double most_parts = 6;
+constexpr double most_parts = 12;
 constexpr double most_uneven_light = 20;
 
 // Rings (57b): how many roundings of the diagonal elements may be taken off, and what pivots must keep of these, so

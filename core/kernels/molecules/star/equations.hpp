@@ -147,6 +147,7 @@ struct StarModel {
         for (int k = 1; k < N; ++k) sum = add_times(sum, tau[k], b[k]);
         return sum;
     }
+    HOL_STATIC MaskOf<V> is_even() { return ~Width<V>::none(); }
     HOL_STATIC V largest_move(const StarKind<N, V> &m, const V *tau) {
         V largest = {};
         HOL_UNROLL
@@ -211,6 +212,7 @@ struct LightStarModel {
         tau[6] = p.z;
     }
 
+    inline HOL_FORCED MaskOf<V> is_even() const { return inverse().is_even(); }
     HOL_STATIC Vector3<V> pull(const V *tau, const Vector3<V> *) { return {tau[4], tau[5], tau[6]}; }
     HOL_STATIC V largest_move(const StarKind<N, V> &m, const V *tau) {
         V of_bonds = {};

@@ -113,8 +113,8 @@ struct Star<4, V> {
             least = k == 0 ? left : min(left, least);
         }
         MaskOf<V> fine = ~less(least, V{});
-        if (__builtin_expect(any(equations.light), 0))
-            fine = (fine & ~equations.light) | (equations.light & equations.is_good_if_light(q, y));
+        const MaskOf<V> light = less(least_light * min(min(m.w[1], m.w[2]), min(m.w[3], m.w[4])), m.w[0]);
+        if (__builtin_expect(any(light), 0)) fine = (fine & ~light) | (light & equations.keeps_digits(q, y));
         return finite(sum) & fine &
                ordinary_squares(min(min(a[0], a[1]), min(a[2], a[3])), max(max(a[0], a[1]), max(a[2], a[3])));
     }

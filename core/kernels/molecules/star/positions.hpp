@@ -66,6 +66,7 @@ struct StarPositions {
         MaskOf<V> unsure = wanted;
         const Model model(m, b, D, sigma);
         const int64_t solves = solve_for_multipliers<N>(model, tau, unsure, call.max_iterations);
+        unsure = unsure | ~model.is_even();
         if (__builtin_expect(bits(wanted) != all_of<V>, 0)) {
             HOL_UNROLL
             for (int k = 0; k < Model::unknowns; ++k) tau[k] = keep(wanted, tau[k]);
