@@ -55,8 +55,8 @@ struct hostile_molecule {
 };
 
 /** From this number on graphs are strips of triangles: all, and half of them in the numbers of scripts/soak. */
-/// From first_bush on, trees have atoms of many bonds, and graphs are rings with such. From first_star on, trees are stars
-/// of three to five bonds; in soaks a quarter of them.
+/// From first_bush on, trees have atoms of many bonds, and graphs are rings with such. From first_star on, trees are
+/// stars of three to five bonds; in soaks a quarter of them.
 constexpr std::uint64_t first_strip = 10000000, first_bush = 20000000, first_star = 30000000,
                         first_of_soaks = UINT64_C(1) << 32;
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/kernels/newton/criterion.hpp"
-#include "core/kernels/newton/first_side.hpp"
+#include "core/kernels/newton/multipliers.hpp"
 #include "core/kernels/newton/sweeps.hpp"
 
 namespace holonomic::HOL_ISA {
@@ -45,45 +45,46 @@ HOL_INLINE Outcome solve_single_bonds(const Newton &x, Carried &carried, mask wa
     return out;
 }
 
-// Two bonds: Newton's method for the multipliers alone, as molecules/small/newton_of_multipliers.hpp has it for
-// triangles and stars. The lengths are right where
-//     2 M tau = sigma + q(tau),   sigma_k = D_k.D_k - a_k^2,   q_k = |P_k|^2,
+// Two bonds, for multipliers.hpp:
 //     P_0 = - (w_0 + w_1) tau_0 b_0 + w_1 tau_1 b_1,   P_1 = - (w_1 + w_2) tau_1 b_1 + w_1 tau_0 b_0:
 // nothing but products of bond vectors is needed to get there.
 
-// Number of solves. It does not depend on what they leave.
+// The fewest solves.
 constexpr int two_bonds_solves = 3;
-// Largest error that the second may leave in the squared lengths. The third leaves about its power 3/2.
-constexpr double two_bonds_left = 1e-11;
 // Least part of m00 m11 that must be left in the determinant of M, so that enough digits are.
 constexpr double two_bonds_part = 1.0 / 64;
 
 // Products of bonds b_k . b_l and D_k . b_l; sums of inverse masses at the bonds, and the one between them.
 struct TwoBonds {
+    static constexpr int unknowns = 2;
     vec b00, b01, b11, g00, g01, g10, g11, s0, s1, w;
+    vec sigma[2], per_a2[2];
 
     // P_k . b_l and q_k.
     struct Change {
-        vec p00, p01, p10, p11, q0, q1;
+        vec p00, p01, p10, p11, q[2];
     };
-    HOL_FORCED Change change(vec t0, vec t1) const {
-        const vec x0 = s0 * t0, y0 = w * t1, x1 = s1 * t1, y1 = w * t0;
+    HOL_FORCED Change change(const vec *tau) const {
+        const vec x0 = s0 * tau[0], y0 = w * tau[1], x1 = s1 * tau[1], y1 = w * tau[0];
         Change c;
         c.p00 = mul_add(y0, b01, -(x0 * b00));
         c.p01 = mul_add(y0, b11, -(x0 * b01));
         c.p11 = mul_add(y1, b01, -(x1 * b11));
         c.p10 = mul_add(y1, b00, -(x1 * b01));
-        c.q0 = mul_add(y0, c.p01, -(x0 * c.p00));
-        c.q1 = mul_add(y1, c.p10, -(x1 * c.p11));
+        c.q[0] = mul_add(y0, c.p01, -(x0 * c.p00));
+        c.q[1] = mul_add(y1, c.p10, -(x1 * c.p11));
         return c;
     }
     // M and 1 / (2 det).
     struct Factors {
         vec m00, m01, m10, m11, r, whole;
-        HOL_FORCED vec first(vec y0, vec y1) const { return r * mul_add(m11, y0, -(m01 * y1)); }
-        HOL_FORCED vec second(vec y0, vec y1) const { return r * mul_add(m00, y1, -(m10 * y0)); }
         HOL_FORCED vec part() const { return mul_add(m00, m11, -(m01 * m10)); }
     };
+    HOL_STATIC void solve(const Factors &f, const vec *y, vec *tau) {
+        const vec y0 = y[0], y1 = y[1];
+        tau[0] = f.r * mul_add(f.m11, y0, -(f.m01 * y1));
+        tau[1] = f.r * mul_add(f.m00, y1, -(f.m10 * y0));
+    }
     HOL_FORCED Factors factors(vec h00, vec h01, vec h10, vec h11) const {
         Factors f;
         f.m00 = s0 * h00;
@@ -94,49 +95,38 @@ struct TwoBonds {
         f.r = splat(0.5) / f.part();
         return f;
     }
-    HOL_FORCED Factors factors() const { return factors(g00, g01, g10, g11); }
-    HOL_FORCED Factors factors(const Change &c) const {
+    HOL_FORCED Factors inverse() const { return factors(g00, g01, g10, g11); }
+    HOL_FORCED Factors inverse(const Change &c) const {
         return factors(g00 + c.p00, g01 + c.p01, g10 + c.p10, g11 + c.p11);
     }
 };
 
 // The lanes in `wanted`, into tau. Those that are neither converged nor untouched need iterate().
 template <Same masses, Same a>
-HOL_INLINE Outcome solve_two_bonds(Newton &x, Carried &carried, mask wanted) {
+HOL_INLINE Outcome solve_two_bonds(Newton &x, Carried &carried, mask wanted, int most) {
     const vec3 b0 = x.b[0], b1 = x.b[1], D0 = x.D[0], D1 = x.D[1];
     const vec one = splat(1.0), w = times_w<masses>(x, 1, one);
-    const TwoBonds m = {dot(b0, b0),
-                        dot(b0, b1),
-                        dot(b1, b1),
-                        dot(D0, b0),
-                        dot(D0, b1),
-                        dot(D1, b0),
-                        dot(D1, b1),
-                        times_w<masses>(x, 0, one) + w,
-                        w + times_w<masses>(x, 2, one),
-                        w};
-    const auto per_a2 = [&](int k)
-                            HOL_FORCED { return a == same || (a == either && !x.a2) ? x.per_a2_uniform : x.per_a2[k]; };
+    TwoBonds m;
+    m.b00 = dot(b0, b0), m.b01 = dot(b0, b1), m.b11 = dot(b1, b1);
+    m.g00 = dot(D0, b0), m.g01 = dot(D0, b1), m.g10 = dot(D1, b0), m.g11 = dot(D1, b1);
+    m.s0 = times_w<masses>(x, 0, one) + w, m.s1 = w + times_w<masses>(x, 2, one), m.w = w;
     vec worst = {};
-    const vec sigma0 = length_error<a>(x, 0, false, D0, worst), sigma1 = length_error<a>(x, 1, false, D1, worst);
+    for (int k = 0; k < 2; ++k) {
+        m.sigma[k] = length_error<a>(x, k, false, x.D[k], worst);
+        m.per_a2[k] = a == same || (a == either && !x.a2) ? x.per_a2_uniform : x.per_a2[k];
+    }
     Outcome out = {};
     // As in the elimination, the error is NaN if a reference is.
-    const vec before = largest_error<a>(x, worst, (sigma0 + sigma1) + (m.g00 + m.g11));
+    const vec before = largest_error<a>(x, worst, (m.sigma[0] + m.sigma[1]) + (m.g00 + m.g11));
     out.untouched = wanted & carried.within(before, one);
-    TwoBonds::Factors f = m.factors();
+    const TwoBonds::Factors f = m.inverse();
     const mask open = less(two_bonds_part * f.whole, f.part());
-    const vec s0 = first_side(sigma0, per_a2(0)), s1 = first_side(sigma1, per_a2(1));
-    const vec t0 = f.first(s0, s1), t1 = f.second(s0, s1);
-    // 2 M tau = sigma + q, linear about the last tau: 2 M' tau = sigma - q. What that leaves is q of the change.
-    TwoBonds::Change c = m.change(t0, t1);
-    f = m.factors(c);
-    const vec z0 = sigma0 - c.q0, z1 = sigma1 - c.q1, next0 = f.first(z0, z1), next1 = f.second(z0, z1);
-    c = m.change(next0 - t0, next1 - t1);
-    const vec left = a == same ? max(c.q0, c.q1) * per_a2(0) : max(c.q0 * per_a2(0), c.q1 * per_a2(1));
-    const mask near =
-        wanted & ~out.untouched & open & less(left, splat(two_bonds_left)) & carried.not_too_far(before, one);
-    x.tau[0] = keep(near, next0 + f.first(c.q0, c.q1));
-    x.tau[1] = keep(near, next1 + f.second(c.q0, c.q1));
+    mask unsure = wanted & open;
+    vec tau[2];
+    const int solves = static_cast<int>(solve_for_multipliers<2>(m, tau, unsure, most));
+    const mask near = wanted & ~out.untouched & open & ~unsure & carried.not_too_far(before, one);
+    x.tau[0] = keep(near, tau[0]);
+    x.tau[1] = keep(near, tau[1]);
     // As Mover has it, where the bond behind the last one is none.
     const vec3 p0 = x.tau[0] * b0, p1 = x.tau[1] * b1, middle = times_w<masses>(x, 1, p1 - p0),
                d0 = D0 + (middle - times_w<masses>(x, 0, p0)), d1 = D1 + (times_w<masses>(x, 2, vec3{} - p1) - middle);
@@ -146,7 +136,7 @@ HOL_INLINE Outcome solve_two_bonds(Newton &x, Carried &carried, mask wanted) {
     out.converged = near & less_equal(out.error, carried.always_accepted());
     x.tau[0] = keep(out.converged, x.tau[0]);
     x.tau[1] = keep(out.converged, x.tau[1]);
-    out.solves = any(out.converged) ? two_bonds_solves : 0;
+    out.solves = any(out.converged) ? solves : 0;
     return out;
 }
 

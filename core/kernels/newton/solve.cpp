@@ -34,8 +34,8 @@ static void join(Outcome &out, const Outcome &more, mask which) {
 }
 
 // Solves the lanes of two bonds in `longer`, and takes out of it those that are done.
-static Outcome try_two_bonds(Newton &x, Carried &carried, mask &longer) {
-    const Outcome out = solve_two_bonds<either, either>(x, carried, longer & less(x.lengths, splat(2.5)));
+static Outcome try_two_bonds(Newton &x, Carried &carried, mask &longer, int most) {
+    const Outcome out = solve_two_bonds<either, either>(x, carried, longer & less(x.lengths, splat(2.5)), most);
     longer = longer & ~(out.converged | out.untouched);
     return out;
 }
@@ -47,7 +47,7 @@ Outcome solve_positions(const Block &block, Newton &x, const PositionsCall &call
     Outcome out = {}, two = {};
     vec tau[2] = {};
     if (!extended && !guess && tries_two_bonds(call) && any(longer & less(x.lengths, splat(2.5)))) {
-        two = try_two_bonds(x, carried, longer);
+        two = try_two_bonds(x, carried, longer, call.max_iterations);
         tau[0] = x.tau[0];
         tau[1] = x.tau[1];
     }

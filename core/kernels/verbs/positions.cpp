@@ -188,7 +188,7 @@ HOL_INLINE bool solve_molecules(const Block &block, Newton &x, const PositionsCa
     if (N == 1)
         out = solve_single_bonds<all>(x, carried, lanes);
     else if (N == 2)
-        out = solve_two_bonds<all, all>(x, carried, lanes);
+        out = solve_two_bonds<all, all>(x, carried, lanes, call.max_iterations);
     else
         out = iterate<all, all, N>(block, x, call, carried, lanes, false, false);
     return !any(~(out.converged | out.untouched)) &&

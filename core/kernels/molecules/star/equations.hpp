@@ -1,11 +1,12 @@
 // Positions of stars: a centre with bonds to N other atoms, as in CH3, NH3, CH4. Bond k points from the centre to atom
-// k of the others. They ascend, so it is also bond k of the molecule. For newton_of_multipliers.hpp, bond k becomes D_k
+// k of the others. They ascend, so it is also bond k of the molecule. For newton/multipliers.hpp, bond k becomes D_k
 // + P_k,
 //     P_k = - w_k tau_k b_k - w_c sum of tau_l b_l.
 #pragma once
 
 #include "core/kernels/molecules/image.hpp"
-#include "core/kernels/molecules/small/newton_of_multipliers.hpp"
+#include "core/kernels/molecules/small/worst_bond.hpp"
+#include "core/kernels/newton/multipliers.hpp"
 #include "core/kernels/molecules/star/atoms.hpp"
 #include "core/kernels/molecules/star/four_bonds.hpp"
 #include "core/kernels/molecules/tree/newton_joint.hpp"

@@ -1,8 +1,9 @@
-// The model of triangles that newton_of_multipliers.hpp solves. Bond k becomes D_k + P_k, where
+// The model of triangles that newton/multipliers.hpp solves. Bond k becomes D_k + P_k, where
 //     P_k = - (w_k + w_{k+1}) tau_k b_k + w_{k+1} tau_{k+1} b_{k+1} + w_k tau_{k-1} b_{k-1}.
 #pragma once
 
-#include "core/kernels/molecules/small/newton_of_multipliers.hpp"
+#include "core/kernels/molecules/small/worst_bond.hpp"
+#include "core/kernels/newton/multipliers.hpp"
 #include "core/kernels/molecules/triangle/equations.hpp"
 
 namespace holonomic::HOL_ISA::graph {
