@@ -9,6 +9,9 @@
 
 namespace holonomic::HOL_ISA {
 
+// Chains of so many bonds have kernels of their own (small.hpp), in a box or over atoms that are listed, too.
+constexpr int largest_boxed_molecule = 3;
+
 constexpr int group = W > 4 ? W : 4;  // bonds of a lane that are read and eliminated at a time
 
 struct Block {

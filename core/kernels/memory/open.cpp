@@ -93,6 +93,12 @@ void open_block(const Unit &unit, int64_t first, Block &block, Lane *lane) {
     }
     block.n = 0;
     block.n_min = unit.lanes[first].n_bonds;
+    if (block.n_min <=
+        largest_boxed_molecule) {  // as their own kernels take them, so that sums over blocks are the same
+        int alike = 1;
+        while (alike < block.lanes && unit.lanes[first + alike].n_bonds == block.n_min) ++alike;
+        block.lanes = alike;
+    }
     for (int i = 0; i < block.lanes; ++i) {
         lane[i] = unit.lanes[first + i];
         block.staged = block.staged || lane[i].atoms;

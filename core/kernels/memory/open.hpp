@@ -66,21 +66,21 @@ static inline void for_each_block(const Call &call, const Unit &unit, double *sc
         if (small(call, unit, block, 0, tally) == 0) work(block, unit.lanes, call, arena, tally);
         return;
     }
-    const auto leave_to_small = [&](int64_t &first) {
-        const int64_t next = small(call, unit, block, first, tally);
-        if (next == first) return false;
-        first = next - W;  // the rest goes on from there
-        return true;
-    };
-    for (int64_t first = 0; first < unit.count; first += W) {
-        if (!unit.regular && leave_to_small(first)) continue;
-        open_block(unit, first, block, lane);
-        if (first == 0 || !unit.regular || block.lanes < W) {
-            arena = Arena(scratch, block.n);
-            set_masses(block, lane, arena, thrice);
+    for (int64_t first = 0; first < unit.count;) {
+        int64_t next = unit.regular ? first : small(call, unit, block, first, tally);
+        if (next == first) {
+            open_block(unit, first, block, lane);
+            if (first == 0 || !unit.regular || block.lanes < W) {
+                arena = Arena(scratch, block.n);
+                set_masses(block, lane, arena, thrice);
+            }
+            if (unit.regular && block.lanes == W) next = small(call, unit, block, first, tally);
         }
-        if (unit.regular && block.lanes == W && leave_to_small(first)) continue;
-        work(block, lane, call, arena, tally);
+        if (next == first) {
+            work(block, lane, call, arena, tally);
+            next = first + block.lanes;
+        }
+        first = next;
     }
 }
 

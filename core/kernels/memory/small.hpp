@@ -14,8 +14,8 @@
 
 namespace holonomic::HOL_ISA {
 
-constexpr int largest_molecule = 5;        // over consecutive atoms, without a box
-constexpr int largest_boxed_molecule = 3;  // in a box, or not over consecutive atoms
+// Over consecutive atoms, without a box; else largest_boxed_molecule.
+constexpr int largest_molecule = 5;
 
 // A place: the W molecules of a unit from molecule `first` on. What all have:
 //   end(unit, first)   the end of those that may be done from `first` on
@@ -229,12 +229,15 @@ HOL_INLINE void store_multipliers(const Place &place, const vec *t, vec factor, 
     }
 }
 
-// Whether a virial is summed up over the same blocks as on the general path, so that layouts change no bit of it.
-// Chains of a unit that is not regular come here by their numbers of bonds; in the shortest a look at the call would
-// take 1.02 to 1.04 times as long where nobody asks.
+// Kernels of the shortest chains are compiled once for calls that ask for a virial, and once for those that don't: a
+// look at the call would take 1.02 to 1.04 times as long where nobody asks. kernel(a constant) is called with true for
+// the first of these.
 constexpr int fewest_with_virial = 3;
-HOL_INLINE bool sums_in_order(const Unit &unit, bool virial) {
-    return !virial || (unit.regular && unit.lanes[0].n_bonds >= fewest_with_virial);
+template <class Place, bool boxed, class Kernel>
+HOL_INLINE int64_t with_virial_or_not(bool virial, const Kernel &kernel) {
+    if constexpr (Place::bonds < fewest_with_virial)
+        if (__builtin_expect(virial, 0)) return kernel(Constant<bool, true>{}, Constant<bool, true>{});
+    return kernel(Constant<bool, false>{}, Constant<bool, boxed>{});
 }
 
 // Counts factor times the virial of the bonds of `used` molecules, as add_virial() does. They are copied, so that they

@@ -117,7 +117,7 @@ HOL_INLINE void load_sides(const Block &block, const Box &box, const Place &plac
 }
 
 // Does molecules from `first` on. Returns the first one that is not done. `given`: the block of a regular unit.
-template <class Place, bool uniform, bool boxed>
+template <class Place, bool uniform, bool boxed, bool virial>
 static int64_t forces_of_molecules(const ForcesCall &call, const Unit &unit, const Block &given, int64_t first,
                                    Tally &tally) {
     constexpr int N = Place::bonds;
@@ -142,7 +142,8 @@ static int64_t forces_of_molecules(const ForcesCall &call, const Unit &unit, con
                 k, [&]() HOL_FORCED { return t[k]; }, k % 4 == 0, false);
         if (__builtin_expect(any(sweep.flag() | ~sweep.calm()), 0)) break;
         backward(0, N, t, L);
-        if (N >= fewest_with_virial && __builtin_expect(call.virial, 0)) count_virial<N>(D, t, n, splat(1.0), tally);
+        if (virial || (N >= fewest_with_virial && __builtin_expect(call.virial, 0)))
+            count_virial<N>(D, t, n, splat(1.0), tally);
         if (g) store_pulls(D, t, place, g, call.add);
         if (call.lambda) store_multipliers(place, t, splat(0.5), call.lambda);
     }
@@ -150,11 +151,14 @@ static int64_t forces_of_molecules(const ForcesCall &call, const Unit &unit, con
 }
 
 static int64_t small_forces(const ForcesCall &call, const Unit &unit, Block &block, int64_t first, Tally &tally) {
-    if (!call.f.x || call.tension || !sums_in_order(unit, call.virial)) return first;
+    if (!call.f.x || call.tension) return first;
     const bool packed = call.r.packed && (!call.v.x || call.v.packed) && call.f.packed && (!call.g.x || call.g.packed);
     const bool boxed = call.box.shape != Box::none;
     const auto kernel = [&](auto place, auto uniform, auto in_box) {
-        return forces_of_molecules<typename decltype(place)::type, uniform, in_box>(call, unit, block, first, tally);
+        typedef typename decltype(place)::type Place;
+        return with_virial_or_not<Place, in_box>(call.virial, [&](auto virial, auto box) {
+            return forces_of_molecules<Place, uniform, box, virial>(call, unit, block, first, tally);
+        });
     };
     if (packed) return any_molecules(unit, block, first, boxed, true, kernel);
     return reads_columns(call) ? molecules_in_columns(unit, block, first, boxed, true, kernel) : first;
@@ -162,8 +166,7 @@ static int64_t small_forces(const ForcesCall &call, const Unit &unit, Block &blo
 
 // Arrays that are not packed. False if nothing has been done.
 static bool forces_in_parts(const ForcesCall &call, const Unit &unit, double *scratch, Tally &tally) {
-    if (call.f.x && !call.tension && reads_columns(call) && fit_columns(unit, call.box.shape != Box::none) &&
-        sums_in_order(unit, call.virial))
+    if (call.f.x && !call.tension && reads_columns(call) && fit_columns(unit, call.box.shape != Box::none))
         return false;
     return in_packed_parts(call, unit, tally, [=](const ForcesCall &c, const Unit &u, Tally &own) {
         for_each_block(c, u, scratch, own, forces_block, small_forces);

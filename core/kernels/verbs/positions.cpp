@@ -247,7 +247,7 @@ HOL_NOINLINE int64_t pairs_of_single_bonds(const PositionsCall &call, const Unit
 }
 
 // Does molecules from `first` on. Returns the first one that is not done.
-template <class Place, bool uniform, bool boxed>
+template <class Place, bool uniform, bool boxed, bool virial>
 HOL_NOINLINE int64_t positions_of_molecules(const PositionsCall &call, const Unit &unit, Block &given, int64_t first,
                                             Tally &tally) {
     constexpr int N = Place::bonds;
@@ -270,7 +270,7 @@ HOL_NOINLINE int64_t positions_of_molecules(const PositionsCall &call, const Uni
         if (!solve_molecules<uniform, N>(block, x, call, carried, out)) break;
         if (call.report) note_block(call, place, Place::alike ? given : newton.masses.own, x, out, tally);
         write_positions<uniform>(arrays, place, block, x, atoms, out.untouched);
-        if (N >= fewest_with_virial && __builtin_expect(call.virial, 0))
+        if (virial || (N >= fewest_with_virial && __builtin_expect(call.virial, 0)))
             count_virial<N>(x.b, x.tau, n, splat(arrays.per_dt2) / block.unit, tally);
         count_moved(tally, n_moved(out, n), out.solves);
         right = bits(out.untouched) == all_lanes ? right + 1 : 0;
@@ -315,7 +315,7 @@ constexpr int most_in_columns = 2;
 
 static inline int64_t small_positions(const PositionsCall &call, const Unit &unit, Block &block, int64_t first,
                                       Tally &tally) {
-    if (call.guess || !sums_in_order(unit, call.virial)) return first;
+    if (call.guess) return first;
     if (unit.lanes[unit.regular ? 0 : first].n_bonds == 2 && !tries_two_bonds(call)) return first;
     const bool packed = call.r.packed && call.r_ref.packed && (!call.v.x || call.v.packed);
     const bool has_box = call.box.shape != Box::none || call.box_ref.shape != Box::none;
@@ -323,8 +323,11 @@ static inline int64_t small_positions(const PositionsCall &call, const Unit &uni
     const auto kernel = [&](auto place, auto uniform, auto boxed) {
         typedef typename decltype(place)::type Place;
         if constexpr (Place::in_row && Place::bonds == 1 && W > 1)
-            if (!call.report) first = pairs_of_single_bonds<Place, uniform, boxed>(call, unit, block, first, tally);
-        return positions_of_molecules<Place, uniform, boxed>(call, unit, block, first, tally);
+            if (!call.report && !call.virial)
+                first = pairs_of_single_bonds<Place, uniform, boxed>(call, unit, block, first, tally);
+        return with_virial_or_not<Place, boxed>(call.virial, [&](auto virial, auto box) {
+            return positions_of_molecules<Place, uniform, box, virial>(call, unit, block, first, tally);
+        });
     };
     if (packed) return any_molecules(unit, block, first, has_box, one_length, kernel);
     return reads_columns(call) ? molecules_in_columns<most_in_columns>(unit, block, first, has_box, one_length, kernel)
@@ -353,8 +356,7 @@ static void positions_of_blocks(const PositionsCall &call, const Unit &unit, dou
 
 // Arrays that are not packed.
 HOL_NOINLINE void positions_in_parts(const PositionsCall &call, const Unit &unit, double *scratch, Tally &tally) {
-    const bool in_columns =
-        reads_columns(call) && fit_columns<most_in_columns>(unit, false) && sums_in_order(unit, call.virial);
+    const bool in_columns = reads_columns(call) && fit_columns<most_in_columns>(unit, false);
     const auto blocks = [=](const PositionsCall &c, const Unit &u, Tally &own) {
         positions_of_blocks(c, u, scratch, own);
     };

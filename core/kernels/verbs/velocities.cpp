@@ -105,7 +105,7 @@ static void velocities_block(const Block &block, const Lane *lane, const Velocit
 HOL_NOINLINE vec stretching_of(const double *strain, vec3 d) { return stretching(strain, d); }
 
 // Does molecules from `first` on. Returns the first one that is not done. `given`: the block of a regular unit.
-template <class Place, bool uniform, bool boxed>
+template <class Place, bool uniform, bool boxed, bool virial>
 static int64_t velocities_of_molecules(const VelocitiesCall &call, const Unit &unit, const Block &given, int64_t first,
                                        Tally &tally) {
     constexpr int N = Place::bonds;
@@ -142,7 +142,8 @@ static int64_t velocities_of_molecules(const VelocitiesCall &call, const Unit &u
         }
         substitute(N, x.correction());
         if (__builtin_expect(any(sweep.flag() | ~x.finite(N)), 0)) break;
-        if (N >= fewest_with_virial && __builtin_expect(call.virial, 0)) count_virial<N>(D, t, n, block.mass, tally);
+        if (virial || (N >= fewest_with_virial && __builtin_expect(call.virial, 0)))
+            count_virial<N>(D, t, n, block.mass, tally);
         Pull<uniform> correction{block, x, left};
         HOL_UNROLL
         for (int k = N - 1; k >= 0; --k) x.v[k + 1] = correction.step(k);
@@ -155,11 +156,13 @@ static int64_t velocities_of_molecules(const VelocitiesCall &call, const Unit &u
 
 static int64_t small_velocities(const VelocitiesCall &call, const Unit &unit, Block &block, int64_t first,
                                 Tally &tally) {
-    if (!sums_in_order(unit, call.virial)) return first;
     const bool boxed = call.box.shape != Box::none;
     const auto kernel = [&](auto place, auto uniform, auto in_box) {
         typedef typename decltype(place)::type Place;
-        return velocities_of_molecules < Place, uniform && Place::alike, in_box > (call, unit, block, first, tally);
+        constexpr bool equal = decltype(uniform)::value && Place::alike, with_box = decltype(in_box)::value;
+        return with_virial_or_not<Place, with_box>(call.virial, [&](auto virial, auto box) {
+            return velocities_of_molecules<Place, equal, box, virial>(call, unit, block, first, tally);
+        });
     };
     if (call.r.packed && call.v.packed) return any_molecules(unit, block, first, boxed, true, kernel);
     return reads_columns(call) ? molecules_in_columns(unit, block, first, boxed, true, kernel) : first;
@@ -167,8 +170,7 @@ static int64_t small_velocities(const VelocitiesCall &call, const Unit &unit, Bl
 
 // Arrays that are not packed. False if nothing has been done.
 static bool velocities_in_parts(const VelocitiesCall &call, const Unit &unit, double *scratch, Tally &tally) {
-    if (reads_columns(call) && fit_columns(unit, call.box.shape != Box::none) && sums_in_order(unit, call.virial))
-        return false;
+    if (reads_columns(call) && fit_columns(unit, call.box.shape != Box::none)) return false;
     return in_packed_parts(call, unit, tally, [=](const VelocitiesCall &c, const Unit &u, Tally &own) {
         for_each_block(c, u, scratch, own, velocities_block, small_velocities);
     });
