@@ -151,7 +151,8 @@ void Factors::solve_all(const FactorsSolve &what, const double *rhs, double *vir
     call.tension = what.tension;
     call.add = what.add;
     call.virial = virial != nullptr;
-    call.boxed = box_.shape != Box::none;
+    call.r = positions();
+    call.box = box_;
     call.kept = &kept_;
     call.left = left;
     Tally tally = solve_kept(chains_, call);

@@ -95,12 +95,20 @@ struct StarForcesVerb {
     __attribute__((noinline)) unsigned solve(const StarAtoms<where, 3, V> &atoms, const MoleculeLane *,
                                              const StarMasses<3, V> &m, MaskOf<V> in_use) const {
         Vector3<V> r[4];
-        V y[3], t[3];
+        V y[3];
         Star<V> star(m);
         atoms.read(call.r, r);
         atoms.take_bonds(r, call.box, star.d);
         star.invert();
         find_sides(atoms, star, y);
+        return finish(atoms, star, y, in_use);
+    }
+
+    // Solves and writes. Returns the lanes that are done.
+    template <Inlined where, class V>
+    inline HOL_FORCED unsigned finish(const StarAtoms<where, 3, V> &atoms, const Star<V> &star, const V *y,
+                                      MaskOf<V> in_use) const {
+        V t[3];
         star.solve(y, t);
         const unsigned good = bits(in_use & star.good(y, t));
         if (!good) return good;
@@ -114,9 +122,10 @@ struct StarForcesVerb {
         Vector3<V> g[4];
         star.pull(t, g);
         if (call.add) {
-            atoms.read(call.g, r);
+            Vector3<V> before[4];
+            atoms.read(call.g, before);
             HOL_UNROLL
-            for (int i = 0; i < 4; ++i) g[i] = r[i] + g[i];
+            for (int i = 0; i < 4; ++i) g[i] = before[i] + g[i];
         }
         atoms.write(call.g, g, good);
         return good;
