@@ -8,7 +8,8 @@ namespace holonomic {
 
 namespace {
 
-// Chains that do not fit into lanes are kept as one lane. Molecules of other shapes are left.
+// Chains that do not fit into lanes are kept as one lane, for right-hand sides that are given; forces are left to the
+// ordinary verb, whose segments are in lanes. Molecules of other shapes are left.
 struct KeptWork : Work {
     const Kernels &k = kernels();
     unsigned char *const left;
@@ -35,6 +36,7 @@ struct KeepWork final : KeptWork {
     }
     void long_chain(const Lane &lane, int, const Team &, double *store, Tally &tally) const override {
         kernels_for_one_chain().kept.keep_chains(call, {&lane, 1, false, false}, store, tally);
+        if (!left[lane.chain]) left[lane.chain] = left_of_forces;
     }
 };
 
@@ -56,7 +58,7 @@ struct SolveWork final : KeptWork {
         if (k.kept.is_kept(*unit.elimination)) k.kept.solve_molecules(calls[where], unit, scratch, tally);
     }
     void long_chain(const Lane &lane, int where, const Team &, double *store, Tally &tally) const override {
-        kernels_for_one_chain().kept.solve_chains(calls[where], {&lane, 1, false, false}, store, tally);
+        if (calls[where].rhs) kernels_for_one_chain().kept.solve_chains(calls[where], {&lane, 1, false, false}, store, tally);
     }
 };
 

@@ -223,7 +223,14 @@ HOL_NOINLINE mask substitute_listed(const Block &block, const System &s, const A
 HOL_NOINLINE mask substitute_given(const Block &block, const System &s, const double *rhs) {
     const vec half = 0.5 * block.mass;
     vec y = {}, size = {};
-    for (long k0 = 0; k0 < block.n; k0 += W) {
+    const double *const own = rhs + block.first_bond[0];
+    for (long k = 0; W == 1 && k < block.n; ++k) {
+        y = mul_add(s.L[k], y, half * own[k]);
+        const vec u = y * s.pivots[k];
+        s.t[k] = u;
+        size = size + abs(u);
+    }
+    for (long k0 = W == 1 ? block.n : 0; k0 < block.n; k0 += W) {
         vec b[W];
         const long end = k0 + W < block.n ? k0 + W : block.n;
         const long from = chunk_at(block, k0);

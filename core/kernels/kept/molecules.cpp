@@ -256,13 +256,16 @@ struct SolveStars {
         Star<V> star(m);
         V y[3];
         kept.take(star);
-        if (call.rhs)
+        if (call.rhs) {
+            HOL_UNROLL
             for (int k = 0; k < 3; ++k) {
+                HOL_UNROLL
                 for (int i = 0; i < Width<V>::lanes; ++i) Width<V>::set(y[k], i, call.rhs[atoms.at.bond[i] + k]);
                 y[k] = Width<V>::all(0.5) * y[k];
             }
-        else
+        } else {
             verb.find_sides(atoms, star, y);
+        }
         const unsigned lanes = static_cast<unsigned>(kept.lanes[0]);
         return verb.finish(atoms, star, y, in_use & Width<V>::of_bits(lanes)) | (bits(in_use) & ~lanes);
     }
