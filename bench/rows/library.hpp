@@ -21,8 +21,8 @@ namespace rows {
                                 function(hol_violation)
 
 /// Those that libraries before 0.3 do not have: nullptr there.
-#define ROWS_LATER_FUNCTIONS(function)                                                                                 \
-    function(hol_factors_create) function(hol_factors_destroy) function(hol_factors_update)                            \
+#define ROWS_LATER_FUNCTIONS(function)                                                      \
+    function(hol_factors_create) function(hol_factors_destroy) function(hol_factors_update) \
         function(hol_factors_forces) function(hol_factors_solve)
 
 /// The functions of the header by their names.

@@ -274,7 +274,8 @@ void add_calls_of_programs(List &list) {
                      });
 }
 
-/// Factors that are kept: beside the row of hol_forces on the same molecules, 0.6 of it and, of a right-hand side, 0.35.
+/// Factors that are kept: beside the row of hol_forces on the same molecules, 0.6 of it and, of a right-hand side,
+/// 0.35.
 void add_factors(List &list) {
     const auto add = [&](const std::string &name, const std::function<Recipe()> &recipe) {
         list.one("kept forces, " + name, recipe, false, false, [](const Call &c) {

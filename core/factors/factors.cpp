@@ -85,7 +85,8 @@ std::unique_ptr<Chains> Factors::those(const unsigned char *left, unsigned char 
     std::unique_ptr<Chains> some = std::make_unique<Chains>(chains_);
     std::vector<unsigned char> active(at(chains_.n_molecules()));
     for (std::int64_t m = 0; m < chains_.n_molecules(); ++m)
-        active[at(m)] = m < chains_.n_chains() ? (left[m] & marks) != 0 : chains_.bodies()->is_active(m - chains_.n_chains());
+        active[at(m)] =
+            m < chains_.n_chains() ? (left[m] & marks) != 0 : chains_.bodies()->is_active(m - chains_.n_chains());
     some->set_active(active.data());
     some->keeps_outcomes = false;
     some->box = box_;

@@ -58,7 +58,8 @@ struct SolveWork final : KeptWork {
         if (k.kept.is_kept(*unit.elimination)) k.kept.solve_molecules(calls[where], unit, scratch, tally);
     }
     void long_chain(const Lane &lane, int where, const Team &, double *store, Tally &tally) const override {
-        if (calls[where].rhs) kernels_for_one_chain().kept.solve_chains(calls[where], {&lane, 1, false, false}, store, tally);
+        if (calls[where].rhs)
+            kernels_for_one_chain().kept.solve_chains(calls[where], {&lane, 1, false, false}, store, tally);
     }
 };
 

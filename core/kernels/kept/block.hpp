@@ -1,5 +1,5 @@
-// Where the factors of a block of chains are kept: bond vectors, as lanes and as rows of what is in memory, multipliers,
-// and reciprocals of pivots.
+// Where the factors of a block of chains are kept: bond vectors, as lanes and as rows of what is in memory,
+// multipliers, and reciprocals of pivots.
 #pragma once
 
 #include "core/kernels/eliminate/chain.hpp"

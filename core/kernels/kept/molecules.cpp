@@ -1,12 +1,8 @@
 // Trees and rings in lanes, and triangles: their elimination kept, and solves with it.
+#include "core/kernels/kept/stars.hpp"
 #include "core/kernels/kept/trees.hpp"
+#include "core/kernels/kept/triangles.hpp"
 #include "core/kernels/molecules/blocks.hpp"
-#include "core/kernels/molecules/load.hpp"
-#include "core/kernels/molecules/solve.hpp"
-#include "core/kernels/molecules/star/linear.hpp"
-#include "core/kernels/molecules/store.hpp"
-#include "core/kernels/molecules/triangle/blocks.hpp"
-#include "core/kernels/tally.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
 namespace holonomic::HOL_ISA {
@@ -18,32 +14,6 @@ bool is_kept(const EliminationPlan &s) {
 }
 
 static bool is_star(const EliminationPlan &s) { return s.way.forces == Way::star; }
-
-static void leave(const MoleculeLane *lane, unsigned which, unsigned char *left) {
-    for (; which; which &= which - 1) left[lane[__builtin_ctz(which)].molecule] = 1;
-}
-
-// Molecules that are kept, but one of whose bonds is cancelling, are solved in twice the precision. What it does not
-// answer for is left.
-HOL_NOINLINE void solve_extended(const KeptCall &call, const EliminationPlan &s, const MoleculeLane *lane,
-                                 unsigned which, double *memory, Tally &tally) {
-    for (; which; which &= which - 1) {
-        const unsigned of = which & -which;
-        Tally one = empty_tally();
-        if (call.rhs)
-            solve_flagged(
-                SolveCall{call.r, call.g, call.rhs, call.lambda, call.tension, call.add, call.virial, call.box}, s,
-                lane, of, memory, one);
-        else
-            solve_flagged(ForcesCall{call.r, call.v, call.f, call.g, call.lambda, call.tension, call.add, call.virial,
-                                     call.box},
-                          s, lane, of, memory, one);
-        if (one.n_bad > 0)
-            leave(lane, of, call.left);
-        else
-            add(tally, one);
-    }
-}
 
 struct KeepTrees {
     const KeepCall &call;
@@ -119,9 +89,18 @@ private:
         if (__builtin_expect(found.n_doubtful > 0, 0)) {
             for (int i = 0; i < used; ++i) lane[i] = molecule_of(unit, first + i);
             const Box no_box = {};
-            const Molecules<V> m = {s,          lane,    used,    at,      &no_box,
-                                    nullptr,    kept.w,  nullptr, nullptr, Width<V>::all(1),
-                                    {&call.v, &call.f, call.rhs, false}, per_cancelled2};
+            const Molecules<V> m = {s,
+                                    lane,
+                                    used,
+                                    at,
+                                    &no_box,
+                                    nullptr,
+                                    kept.w,
+                                    nullptr,
+                                    nullptr,
+                                    Width<V>::all(1),
+                                    {&call.v, &call.f, call.rhs, false},
+                                    per_cancelled2};
             good &= x.look_again(m, found.n_doubtful);
         }
         if (__builtin_expect(good != (in_use & kept_lanes), 0)) {
@@ -136,7 +115,8 @@ private:
             virial.count(good, 1, tally);
         }
         if (call.g.x)
-            write_vectors(call.g, at, s.slot_of, s.n_atoms, Slots<V>(pull), Written<V>{good, nullptr, nullptr, call.add});
+            write_vectors(call.g, at, s.slot_of, s.n_atoms, Slots<V>(pull),
+                          Written<V>{good, nullptr, nullptr, call.add});
     }
     template <class V>
     inline HOL_FORCED void up(const KeptTreesSolve<V> &x, const Atoms<V> &at, Memory<V> &memory) const {
@@ -151,7 +131,8 @@ private:
                call.f.x != nullptr);
     }
     template <bool has_v, bool has_f, class V>
-    static inline __attribute__((noinline)) void up_forces(const KeptTreesSolve<V> &x, const Vector3<V> *v, const Vector3<V> *f) {
+    static inline __attribute__((noinline)) void up_forces(const KeptTreesSolve<V> &x, const Vector3<V> *v,
+                                                           const Vector3<V> *f) {
         const KeptTreesSolve<V> y = x;
         y.up([&](int32_t place, int32_t from, int32_t to) HOL_FORCED {
             V b = {};
@@ -186,211 +167,11 @@ private:
     }
 };
 
-// A kept star of three bonds.
-template <class V>
-struct KeptStar {
-    double lanes[most_lanes];  // the first one, bit by bit
-    V d[9], q[3], adj[6], r;
-    void keep(const Star<V> &star, unsigned good) {
-        lanes[0] = static_cast<double>(good);
-        for (int k = 0, e = 0; k < 3; ++k) {
-            put(*reinterpret_cast<Vector3<V> *>(d + 3 * k), star.d[k]);
-            q[k] = star.q[k];
-            for (int l = k; l < 3; ++l, ++e) adj[e] = star.adj[k][l];
-        }
-        r = star.r;
-    }
-    inline HOL_FORCED void take(Star<V> &star) const {
-        HOL_UNROLL
-        for (int k = 0; k < 3; ++k) {
-            star.d[k] = {d[3 * k], d[3 * k + 1], d[3 * k + 2]};
-            star.q[k] = q[k];
-            HOL_UNROLL
-            for (int l = k; l < 3; ++l) star.adj[k][l] = star.adj[l][k] = adj[k == 0 ? l : k + l + 1];
-        }
-        star.r = r;
-        star.margin = V{};
-    }
-};
-
-struct KeepStars {
-    static constexpr bool in_steps = false;
-    template <int N, class V>
-    using Kind = StarMasses<N, V>;
-    const KeepCall &call;
-
-    template <Inlined where, class V>
-    __attribute__((noinline)) unsigned solve(const StarAtoms<where, 3, V> &atoms, const MoleculeLane *lane,
-                                             const StarMasses<3, V> &m, MaskOf<V> in_use) const {
-        typedef KeptStar<V> Stored;
-        double *const room = call.kept->room(call.kept->owner, lane[0].molecule,
-                                             static_cast<int64_t>(sizeof(Stored) / sizeof(double)));
-        if (!room) return 0;
-        Vector3<V> r[4];
-        const V nothing[3] = {};
-        Star<V> star(m);
-        atoms.read(call.r, r);
-        atoms.take_bonds(r, call.box, star.d);
-        star.invert();
-        const unsigned good = bits(in_use & star.good(nothing, nothing));
-        reinterpret_cast<Stored *>(room)->keep(star, good);
-        return good;
-    }
-};
-
-struct SolveStars {
-    static constexpr bool in_steps = false;
-    template <int N, class V>
-    using Kind = StarMasses<N, V>;
-    const KeptCall &call;
-    const ForcesCall forces;
-    Tally &tally;
-
-    template <Inlined where, class V>
-    __attribute__((noinline)) unsigned solve(const StarAtoms<where, 3, V> &atoms, const MoleculeLane *lane,
-                                             const StarMasses<3, V> &m, MaskOf<V> in_use) const {
-        const double *const from = call.kept->block[lane[0].molecule];
-        if (!from) return bits(in_use);  // they are left already
-        const KeptStar<V> &kept = *reinterpret_cast<const KeptStar<V> *>(from);
-        const StarForcesVerb verb = {forces, tally};
-        Star<V> star(m);
-        V y[3];
-        kept.take(star);
-        if (call.rhs) {
-            HOL_UNROLL
-            for (int k = 0; k < 3; ++k) {
-                HOL_UNROLL
-                for (int i = 0; i < Width<V>::lanes; ++i) Width<V>::set(y[k], i, call.rhs[atoms.at.bond[i] + k]);
-                y[k] = Width<V>::all(0.5) * y[k];
-            }
-        } else {
-            verb.find_sides(atoms, star, y);
-        }
-        const unsigned lanes = static_cast<unsigned>(kept.lanes[0]);
-        return verb.finish(atoms, star, y, in_use & Width<V>::of_bits(lanes)) | (bits(in_use) & ~lanes);
-    }
-};
-
-// Stars that closed forms don't answer for.
-struct LeaveStars {
-    unsigned char *const left;
-    NextMolecules &ahead;
-    static constexpr bool packed = true;
-    template <class V>
-    void block(const MoleculeLane *lane, int, bool, double *) const {
-        leave(lane, 1, left);
-    }
-};
-struct ExtendedStars {
-    const KeptCall &call;
-    const EliminationPlan &elimination;
-    NextMolecules &ahead;
-    Tally &tally;
-    static constexpr bool packed = true;
-    template <class V>
-    void block(const MoleculeLane *lane, int, bool, double *scratch) const {
-        solve_extended(call, elimination, lane, 1, scratch, tally);
-    }
-};
-
-// A kept triangle: bonds, inverse, and which lanes are kept.
-template <class V>
-struct KeptTriangle {
-    double lanes[most_lanes];  // the first one, bit by bit
-    V d[9], adj[6], r;
-    TriangleInverse<V> inverse() const {
-        TriangleInverse<V> m;
-        for (int k = 0, e = 0; k < 3; ++k)
-            for (int l = k; l < 3; ++l, ++e) m.adj[k][l] = m.adj[l][k] = adj[e];
-        m.r = r;
-        return m;
-    }
-};
-
-struct KeepTriangles : OneWay {
-    const KeepCall &call;
-    explicit KeepTriangles(const KeepCall &c) : call(c) {}
-    void solve_extended(const EliminationPlan &, const MoleculeLane *lane, unsigned rest, double *) const {
-        leave(lane, rest, call.left);
-    }
-    template <Inlined where, class V, class Lanes>
-    inline HOL_FORCED unsigned solve(const Lanes &lanes, int used, const Atoms<V> &at,
-                                     const TriangleKind<V> &kind) const {
-        typedef KeptTriangle<V> Stored;
-        double *const room =
-            call.kept->room(call.kept->owner, lanes.molecule(0), static_cast<int64_t>(sizeof(Stored) / sizeof(double)));
-        if (!room) return 0;
-        Stored &to = *reinterpret_cast<Stored *>(room);
-        Vector3<V> r[3];
-        read_all<where, 3>(call.r, at, r);
-        const Triangle<V> x = triangle_of(call.box, r);
-        const TriangleInverse<V> m = invert_triangle(kind.masses, x);
-        V left = Width<V>::all(1);  // as in solve_triangles()
-        for (int k = 0; k < 3; ++k) {
-            const int l = (k + 1) % 3;
-            left = min(mul_add(Width<V>::all(-0.4), kind.masses.s[l] * x.X, abs(m.adj[k][l])), left);
-        }
-        for (int k = 0, e = 0; k < 3; ++k) {
-            put(*reinterpret_cast<Vector3<V> *>(to.d + 3 * k), x.d[k]);
-            for (int l = k; l < 3; ++l, ++e) to.adj[e] = m.adj[k][l];
-        }
-        to.r = m.r;
-        const unsigned good = bits(Width<V>::first(used) & x.closed & m.is_ordinary() & less_equal(V{}, left));
-        to.lanes[0] = static_cast<double>(good);
-        return good;
-    }
-};
-
-struct SolveTriangles : OneWay {
-    const KeptCall &call;
-    Tally &tally;
-    SolveTriangles(const KeptCall &c, Tally &t) : call(c), tally(t) {}
-    void solve_extended(const EliminationPlan &s, const MoleculeLane *lane, unsigned rest, double *scratch) const {
-        HOL_ISA::solve_extended(call, s, lane, rest, scratch, tally);
-    }
-    template <Inlined where, class V, class Lanes>
-    inline HOL_FORCED unsigned solve(const Lanes &lanes, int used, const Atoms<V> &at,
-                                     const TriangleKind<V> &kind) const {
-        const double *const from = call.kept->block[lanes.molecule(0)];
-        if (!from) return (1u << used) - 1;  // they are left already
-        const KeptTriangle<V> &kept = *reinterpret_cast<const KeptTriangle<V> *>(from);
-        Vector3<V> d[3];
-        for (int k = 0; k < 3; ++k) d[k] = {kept.d[3 * k], kept.d[3 * k + 1], kept.d[3 * k + 2]};
-        V t[3], y[3];
-        const Box no_box = {};
-        const TriangleCall sides = {call.g,      call.v,       call.f,   call.rhs,    call.g,
-                                    call.lambda, call.tension, call.add, call.virial, no_box};
-        triangle_sides<where>(sides, at, kind.masses, d, y);
-        TriangleInverse<V>::solve(kept.inverse(), y, t);
-        const unsigned of_kept = static_cast<unsigned>(kept.lanes[0]), others = ((1u << used) - 1) & ~of_kept,
-                       good = bits(Width<V>::first(used) & finite(t[0] + (t[1] + t[2]))) & of_kept;
-        if (!good) return others;
-        if (call.lambda) write_triangle_bonds<where>(at, t, Width<V>::all(0.5), call.lambda, good);
-        if (call.tension) {
-            V T[3];
-            for (int k = 0; k < 3; ++k) T[k] = t[k] * sqrt(dot(d[k], d[k]));
-            write_triangle_bonds<where>(at, T, Width<V>::all(1), call.tension, good);
-        }
-        if (call.virial) add_bonds_virial<3>(d, t, 1, good, tally);
-        if (!call.g.x) return good | others;
-        Vector3<V> g[3], before[3];
-        for (int i = 0; i < 3; ++i) g[i] = triangle_pull(d, t, i);
-        if (call.add) {
-            read_all<where, 3>(call.g, at, before);
-            for (int i = 0; i < 3; ++i) g[i] = before[i] + g[i];
-        }
-        write_all<where, 3>(call.g, at, g, good);
-        return good | others;
-    }
-};
-
 void keep_molecules(const KeepCall &call, const MoleculeUnit &unit, double *scratch, Tally &) {
     if (unit.elimination->way.given == Way::triangle)
         return for_each_triangle(KeepTriangles(call), unit, true, scratch);
     NextMolecules ahead;
-    if (is_star(*unit.elimination) &&
-        do_stars<3>(KeepStars{call}, LeaveStars{call.left, ahead}, unit, scratch))
-        return;
+    if (is_star(*unit.elimination) && do_stars<3>(KeepStars{call}, LeaveStars{call.left, ahead}, unit, scratch)) return;
     KeepTrees work = {call, *unit.elimination};
     for_each_block(unit, scratch, ahead, work);
 }
@@ -399,10 +180,10 @@ void solve_kept_molecules(const KeptCall &call, const MoleculeUnit &unit, double
     if (unit.elimination->way.given == Way::triangle)
         return for_each_triangle(SolveTriangles(call, tally), unit, true, scratch);
     NextMolecules ahead;
-    const ForcesCall forces = {call.r,       call.v,   call.f,      call.g, call.lambda,
+    const ForcesCall forces = {call.r,       call.v,   call.f,      call.g,  call.lambda,
                                call.tension, call.add, call.virial, call.box};
-    if (is_star(*unit.elimination) &&
-        do_stars<3>(SolveStars{call, forces, tally}, ExtendedStars{call, *unit.elimination, ahead, tally}, unit, scratch))
+    if (is_star(*unit.elimination) && do_stars<3>(SolveStars{call, forces, tally},
+                                                  ExtendedStars{call, *unit.elimination, ahead, tally}, unit, scratch))
         return;
     SolveTrees(call, unit, scratch, tally).solve();
 }
