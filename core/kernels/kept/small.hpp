@@ -56,45 +56,54 @@ static int64_t solve_small(const KeptCall &call, const Unit &unit, const Block &
         const double *const from = call.kept->block[place.chain_of(0)];
         if (!from || !is_small(from)) break;
         masses.take(place);
-        vec t[N], e[vectors_of<N>], *const L = multipliers(from, N), *const P = pivots(from, N);
+        const vec *const L = multipliers(from, N), *const P = pivots(from, N);
         const vec3 *const D = bonds(from);
-        vec3 dv[N] = {}, df[N] = {}, *const x = reinterpret_cast<vec3 *>(e);
+        vec t[N] = {};
         if (call.rhs) {
-            for (int k = 0; k < N; ++k)
+            HOL_UNROLL
+            for (int k = 0; k < N; ++k) {
+                HOL_UNROLL
                 for (int i = 0; i < W; ++i) t[k][i] = call.rhs[place.bond_of(i) + k];
-            for (int k = 0; k < N; ++k) t[k] = (0.5 * block.mass) * t[k];
-        } else {
-            if (call.v.x) {
-                load_molecules(place, base(call.v), e);
-                HOL_UNROLL
-                for (int k = 0; k < N; ++k) dv[k] = x[k + 1] - x[k];
+                t[k] = (0.5 * block.mass) * t[k];
             }
-            if (call.f.x) {
-                load_molecules(place, base(call.f), e);
-                HOL_UNROLL
-                for (int k = 0; k < N; ++k)
-                    df[k] = uniform ? x[k + 1] - x[k] : block.w[k + 1] * x[k + 1] - block.w[k] * x[k];
-            }
+        }
+        if (!call.rhs && call.v.x) {
+            vec e[vectors_of<N>];
+            const vec3 *const v = reinterpret_cast<const vec3 *>(e);
+            load_molecules(place, base(call.v), e);
             HOL_UNROLL
             for (int k = 0; k < N; ++k)
-                t[k] = call.v.x ? right_hand_side(velocity_squared | force_difference, block.mass, D[k], dv[k], df[k])
-                                : right_hand_side(force_difference, block.mass, D[k], dv[k], df[k]);
+                t[k] = right_hand_side(velocity_squared, block.mass, D[k], v[k + 1] - v[k], vec3{});
         }
-        vec y = {};
+        if (!call.rhs && call.f.x) {
+            vec e[vectors_of<N>];
+            const vec3 *const f = reinterpret_cast<const vec3 *>(e);
+            load_molecules(place, base(call.f), e);
+            HOL_UNROLL
+            for (int k = 0; k < N; ++k)
+                t[k] =
+                    t[k] + right_hand_side(force_difference, block.mass, D[k], vec3{},
+                                           uniform ? f[k + 1] - f[k] : block.w[k + 1] * f[k + 1] - block.w[k] * f[k]);
+        }
+        vec y = t[0];
+        t[0] = y * P[0];
         HOL_UNROLL
-        for (int k = 0; k < N; ++k) {
-            y = k == 0 ? t[0] : mul_add(L[k], y, t[k]);
+        for (int k = 1; k < N; ++k) {
+            y = mul_add(L[k], y, t[k]);
             t[k] = y * P[k];
         }
-        backward(0, N, t, L);
+        t[N - 1] = t[N - 1] + 0.0;  // zeros as +0
+        HOL_UNROLL
+        for (int k = N - 1; k > 0; --k) t[k - 1] = mul_add(L[k], t[k], t[k - 1]);
         if (__builtin_expect(any(~finite(t[0])), 0)) {
             for (int64_t i = 0; i < n; ++i) call.left[place.chain_of(static_cast<int>(i))] = 1;
             continue;
         }
         if (call.g.x) store_pulls(D, t, place, base(call.g), call.add);
-        if (call.virial) add_virial(N, D, t, first_lanes(static_cast<int>(n)), splat(1.0), tally);
+        if (call.virial) count_virial<N>(D, t, n, splat(1.0), tally);
         if (call.lambda) store_multipliers(place, t, splat(0.5), call.lambda);
         if (call.tension) {
+            HOL_UNROLL
             for (int k = 0; k < N; ++k) t[k] = t[k] * sqrt(dot(D[k], D[k]));
             store_multipliers(place, t, splat(1.0), call.tension);
         }
