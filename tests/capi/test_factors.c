@@ -78,9 +78,28 @@ static void forces_agree_with_a_dense_solution_for_molecules_of_every_shape(void
     }
 }
 
+/** Forces on some atoms that are a millionth of those on others: multipliers that are small differences. */
+static void uneven_forces_agree_with_a_dense_solution(void **state)
+{
+    (void)state;
+    static const molecule_kind kinds[] = {MOLECULE_TREE, MOLECULE_RING, MOLECULE_COMB, MOLECULE_STAR, MOLECULE_CHAIN};
+    random_stream stream = random_seed(12);
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; ++k)
+        for (int size = 3; size < 30; size = size * 3 + 1) {
+            mixture m = mixture_of_kind(kinds[k], quick_run() ? 12 : 60, size, size + 3, MIXED, 400 + k);
+            for (size_t i = 0; i < mixture_size(&m) / 3; ++i) {
+                const double factor = random_uniform(&stream) < 0.2 ? 1 : 1e-6;
+                for (int c = 0; c < 3; ++c) m.f[3 * i + (size_t)c] *= factor;
+            }
+            for (int64_t p = 0; p < m.n_parts; ++p) mixture_take(&m, p, m.f, m.parts[p].f);
+            assert_solution(&m, NULL, m.f);
+            mixture_free(&m);
+        }
+}
+
 /**
- * Right-hand sides of which some bonds have a millionth of what others have, so that multipliers are small differences:
- * lanes that plain products don't answer for, at single atoms.
+ * Right-hand sides of which some bonds have a millionth of what others have, so that multipliers are small
+ * differences.
  */
 static void uneven_right_hand_sides_agree_with_a_dense_solution(void **state)
 {
@@ -285,6 +304,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(forces_agree_with_a_dense_solution_for_molecules_of_every_shape),
+        cmocka_unit_test(uneven_forces_agree_with_a_dense_solution),
         cmocka_unit_test(uneven_right_hand_sides_agree_with_a_dense_solution),
         cmocka_unit_test(chains_agree_with_hol_forces),
         cmocka_unit_test(right_hand_sides_are_solved_as_by_hol_solve),
