@@ -967,7 +967,7 @@ HOL_API void hol_factors_destroy(hol_factors *factors);
 /**
  * Makes the factors at these positions, in the box and with the rate of the box that the set has now; they belong to
  * these until the next update. It costs about what hol_forces does, allocates at the first time and after a change of
- * the set, and keeps 5 to 16 doubles per bond and 4 per atom.
+ * the set, and keeps 5 to 16 doubles per bond and 4 per atom. So it pays from about three solves on.
  *
  * Chains, trees and rings of up to 2048 bonds and triangles are kept; chains of more than 256 bonds for
  * hol_factors_solve alone. Of larger ones, other cycles, rigid bodies, molecules that plain products do not answer for,
