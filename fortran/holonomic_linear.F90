@@ -66,8 +66,11 @@ contains
       type(c_ptr) :: pairs, of_pairs
       integer(c_int64_t) :: n_bonds
       call problem%need_created(self%c_handle())
-      relations = [size(atoms, kind=int64)]
-      if (present(sizes)) relations = sizes
+      if (present(sizes)) then
+         allocate (relations, source=sizes)
+      else
+         allocate (relations(1), source=size(atoms, kind=int64))
+      end if
       if (size(coefficients) /= size(atoms) .or. sum(relations) /= size(atoms)) then
          call problem%set(HOL_ERR_VALUE, decimal(size(coefficients, kind=c_int64_t))//" coefficients were given, and sizes "// &
                           "that add up to "//decimal(sum(relations))//", for "// &

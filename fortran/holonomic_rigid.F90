@@ -67,8 +67,11 @@ contains
       type(c_ptr) :: pairs, of_pairs
       integer(c_int64_t) :: n_bonds
       call problem%need_created(self%c_handle())
-      bodies = [size(atoms, kind=int64)]
-      if (present(sizes)) bodies = sizes
+      if (present(sizes)) then
+         allocate (bodies, source=sizes)
+      else
+         allocate (bodies(1), source=size(atoms, kind=int64))
+      end if
       if (size(places, 1) /= 3 .or. size(places, 2) /= size(atoms)) then
          call problem%set(HOL_ERR_VALUE, "places must be (3, "//decimal(size(atoms, kind=c_int64_t))//"), not ("// &
                           decimal(size(places, 1, c_int64_t))//", "//decimal(size(places, 2, c_int64_t))//")")

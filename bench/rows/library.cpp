@@ -11,13 +11,16 @@ Library::Library(const std::string &file) {
     // Local: neither library may find the functions of the other.
     void *const handle = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (!handle) throw std::runtime_error(dlerror());
-    auto find = [&](auto &function, const char *name) {
+    auto find = [&](auto &function, const char *name, bool needed) {
         void *const found = dlsym(handle, name);
-        if (!found) throw std::runtime_error(file + " has no " + name);
+        if (!found && needed) throw std::runtime_error(file + " has no " + name);
         std::memcpy(&function, &found, sizeof function);
     };
-#define ROWS_FIND(name) find(name, #name);
+#define ROWS_FIND(name) find(name, #name, true);
+#define ROWS_LOOK_FOR(name) find(name, #name, false);
     ROWS_FUNCTIONS(ROWS_FIND)
+    ROWS_LATER_FUNCTIONS(ROWS_LOOK_FOR)
+#undef ROWS_LOOK_FOR
 #undef ROWS_FIND
 }
 

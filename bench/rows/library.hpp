@@ -20,10 +20,16 @@ namespace rows {
                             function(hol_metric_view) function(hol_solve) function(hol_reactions)                      \
                                 function(hol_violation)
 
+/// Those that libraries before 0.3 do not have: nullptr there.
+#define ROWS_LATER_FUNCTIONS(function)                                                      \
+    function(hol_factors_create) function(hol_factors_destroy) function(hol_factors_update) \
+        function(hol_factors_forces) function(hol_factors_solve)
+
 /// The functions of the header by their names.
 struct Library {
 #define ROWS_DECLARE(name) decltype(&::name) name = nullptr;
     ROWS_FUNCTIONS(ROWS_DECLARE)
+    ROWS_LATER_FUNCTIONS(ROWS_DECLARE)
 #undef ROWS_DECLARE
 
     /// Two files with the same content must be two files: one that is loaded already is not loaded again.

@@ -274,6 +274,31 @@ void add_calls_of_programs(List &list) {
                      });
 }
 
+/// Factors that are kept: beside the row of hol_forces on the same molecules, 0.6 of it and, of a right-hand side,
+/// 0.35.
+void add_factors(List &list) {
+    const auto add = [&](const std::string &name, const std::function<Recipe()> &recipe) {
+        list.one("kept forces, " + name, recipe, false, false, [](const Call &c) {
+            Arrays &a = c.arrays;
+            return c.calls.hol_factors_forces(c.factors, a.v.packed(), a.f.packed(), a.lambda.data(), nullptr,
+                                              a.g.packed(), HOL_WRITE, nullptr);
+        });
+        list.one("kept solve, " + name, recipe, false, false, [](const Call &c) {
+            Arrays &a = c.arrays;
+            return c.calls.hol_factors_solve(c.factors, 1, a.f.packed(), a.more.data(), nullptr, HOL_WRITE, nullptr);
+        });
+        for (std::size_t i = list.rows.size() - 2; i < list.rows.size(); ++i) list.rows[i].keeps = true;
+    };
+    for (std::int64_t n : {1, 3, 10, 100, 1000}) add(of_bonds(n), coil(n));
+    add("water", of(2000, bench::water_kind));
+    add("CH3", of(2000, [] { return bench::formula_kind("C(H)(H)H"); }));
+    add("butane", of(400, [] { return bench::formula_kind("C(H)(H)(H)C(H)(H)C(H)(H)C(H)(H)H"); }));
+    add("comb, 20 + 20", of(150, [] { return bench::comb_kind(20, 1); }));
+    add("ring of 50", of(120, [] { return bench::ring_kind(50); }));
+    add("toluene", of(400, [] { return bench::formula_kind("C(H)(H)(H)C1C(H)C(H)C(H)C(H)C1H"); }));
+    add("naphthalene", of(300, [] { return bench::formula_kind("C1C(H)C(H)C(H)C(H)C1C2C(H)C(H)C(H)C(H)C12"); }));
+}
+
 void add_molecules(List &list) {
     const auto formula = [](const char *text) { return [text] { return bench::formula_kind(text); }; };
     const auto water = of(2000, bench::water_kind), ch3 = of(2000, formula("C(H)(H)H")),
@@ -355,6 +380,7 @@ std::vector<Row> all_rows() {
     add_chains(list);
     add_options(list);
     add_calls_of_programs(list);
+    add_factors(list);
     add_molecules(list);
     return list.rows;
 }

@@ -26,7 +26,13 @@ class Run {
 public:
     Run(const Row &row, const Library &library, const Scene &scene)
         : row_(row), library_(library), scene_(scene), handle_(make_handle(library, scene)),
-          fresh_(row.layout, scene, row.moved) {
+          factors_(nullptr, library.hol_factors_destroy), fresh_(row.layout, scene, row.moved) {
+        if (row.keeps) {
+            hol_factors *made = nullptr;
+            library.check(library.hol_factors_create(handle_.get(), &made));
+            factors_.reset(made);
+            library.check(library.hol_factors_update(made, fresh_.r.packed()));
+        }
         copies_ = std::max<std::size_t>(1, 4000 / scene.bonds());
         for (std::size_t i = 0; i < copies_; ++i) arrays_.emplace_back(row.layout, scene, row.moved);
     }
@@ -41,7 +47,7 @@ public:
 
     void calls() {
         int status = HOL_OK;
-        for (Arrays &a : arrays_) status |= row_.call({library_, scene_, handle_.get(), a});
+        for (Arrays &a : arrays_) status |= row_.call({library_, scene_, handle_.get(), factors_.get(), a});
         library_.check(status);
     }
 
@@ -52,6 +58,7 @@ private:
     const Library &library_;
     const Scene &scene_;
     Handle handle_;
+    std::unique_ptr<hol_factors, void (*)(hol_factors *)> factors_;
     std::size_t copies_ = 1;
     Arrays fresh_;
     std::vector<Arrays> arrays_;
@@ -114,6 +121,7 @@ int run(char **argv) {
     const Library libraries[2] = {Library(argv[2]), Library(argv[3])};
     for (const Row &row : all_rows()) {
         if (!wanted(row, argv[4])) continue;
+        if (row.keeps && (!libraries[0].hol_factors_create || !libraries[1].hol_factors_create)) continue;
         const Scene scene = make_scene(row.recipe(), libraries[0]);
         if (counting)
             count(row, libraries[1], scene);

@@ -46,6 +46,7 @@ struct Call {
     const Library &calls;
     const Scene &scene;
     hol_chains *chains;
+    hol_factors *factors;  ///< of rows that have some, at the positions of the arrays
     Arrays &arrays;
 };
 
@@ -53,6 +54,7 @@ struct Row {
     std::string name;
     bool common = true;  ///< packed or listed atoms, no box or an orthorhombic one
     bool alone = false;  ///< one molecule that may take the kernels of one lane
+    bool keeps = false;  ///< factors, made before the call
     bool moved = false;  ///< r after a step; otherwise on the constraints
     Layout layout = Layout::packed;
     std::function<Recipe()> recipe;

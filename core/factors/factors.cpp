@@ -18,6 +18,8 @@ namespace {
 
 constexpr std::int64_t alignment = 64, chunk = std::int64_t{1} << 17;  // bytes; doubles of one
 
+constexpr unsigned char any_mark = 1 | left_of_forces;
+
 std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 void copy(const AtomArray &from, std::int64_t n_atoms, double *to) {
@@ -70,6 +72,7 @@ void Factors::begin() {
         free_ = 0;
         blocks_.assign(n, Block{});
         rest_.reset();
+        rest_of_forces_.reset();
     }
     block_.assign(n, nullptr);
     left_.assign(n, 0);
@@ -77,12 +80,13 @@ void Factors::begin() {
     kept_ = {this, room, block_.data()};
 }
 
-// The set with those molecules alone that are marked, and those with bodies.
-std::unique_ptr<Chains> Factors::those(const unsigned char *left) const {
+// The set with those molecules alone that have one of these marks, and those with bodies.
+std::unique_ptr<Chains> Factors::those(const unsigned char *left, unsigned char marks) const {
     std::unique_ptr<Chains> some = std::make_unique<Chains>(chains_);
     std::vector<unsigned char> active(at(chains_.n_molecules()));
     for (std::int64_t m = 0; m < chains_.n_molecules(); ++m)
-        active[at(m)] = m < chains_.n_chains() ? left[m] : chains_.bodies()->is_active(m - chains_.n_chains());
+        active[at(m)] =
+            m < chains_.n_chains() ? (left[m] & marks) != 0 : chains_.bodies()->is_active(m - chains_.n_chains());
     some->set_active(active.data());
     some->keeps_outcomes = false;
     some->box = box_;
@@ -108,8 +112,10 @@ void Factors::update(const AtomArray &r) {
         keep(chains_, call);
     revision_ = chains_.revision();
     rest_.reset();
+    rest_of_forces_.reset();
+    if (std::memchr(left_.data(), left_of_forces, left_.size())) rest_of_forces_ = those(left_.data(), any_mark);
     if (!chains_.bodies() && !std::memchr(left_.data(), 1, left_.size())) return;
-    rest_ = those(left_.data());
+    rest_ = those(left_.data(), 1);
     ForcesCall look{};  // finds what is bad
     look.r = positions();
     holonomic::forces(*rest_, look, nullptr);
@@ -151,7 +157,8 @@ void Factors::solve_all(const FactorsSolve &what, const double *rhs, double *vir
     call.tension = what.tension;
     call.add = what.add;
     call.virial = virial != nullptr;
-    call.boxed = box_.shape != Box::none;
+    call.r = positions();
+    call.box = box_;
     call.kept = &kept_;
     call.left = left;
     Tally tally = solve_kept(chains_, call);
@@ -163,9 +170,10 @@ void Factors::solve_all(const FactorsSolve &what, const double *rhs, double *vir
     std::unique_ptr<Chains> more;
     if (n > 0 && std::memchr(left, 1, at(n))) {
         for (std::int64_t m = 0; m < n; ++m) left[m] |= left_[at(m)];
-        more = those(left);
+        more = those(left, rhs ? 1 : any_mark);
     }
-    if (const Chains *const rest = more ? more.get() : rest_.get()) {
+    const Chains *const known = !rhs && rest_of_forces_ ? rest_of_forces_.get() : rest_.get();
+    if (const Chains *const rest = more ? more.get() : known) {
         if (rhs && what.rhs) {
             holonomic::solve(*rest, positions(), rhs, what.lambda, what.g, what.add, virial ? of_rest : nullptr);
         } else {

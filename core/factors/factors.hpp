@@ -43,7 +43,7 @@ private:
     void begin();
     void need_update() const;
     void solve_all(const FactorsSolve &what, const double *rhs, double *virial) const;
-    std::unique_ptr<Chains> those(const unsigned char *left) const;
+    std::unique_ptr<Chains> those(const unsigned char *left, unsigned char marks) const;
     AtomArray positions() const;
 
     const Chains &chains_;
@@ -65,7 +65,8 @@ private:
     double *end_ = nullptr;
     KeptFactors kept_{};
     std::vector<unsigned char> left_;  // [n_molecules] not kept
-    std::unique_ptr<Chains> rest_;     // these, or null: there are none
+    // These of given right-hand sides, and of forces where that is more; or null: there are none.
+    std::unique_ptr<Chains> rest_, rest_of_forces_;
 };
 
 }  // namespace holonomic

@@ -8,14 +8,16 @@ namespace holonomic {
 
 namespace {
 
-// Chains that do not fit into lanes are left, and molecules of other shapes.
+// Chains that do not fit into lanes are kept as one lane, for right-hand sides that are given; forces are left to the
+// ordinary verb, whose segments are in lanes. Molecules of other shapes are left.
 struct KeptWork : Work {
     const Kernels &k = kernels();
     unsigned char *const left;
     explicit KeptWork(unsigned char *marks) : left(marks) {}
     std::int64_t long_blocks(std::int64_t) const override { return 0; }
-    std::int64_t long_bytes(std::int64_t) const override { return 0; }
-    void long_chain(const Lane &lane, int, const Team &, double *, Tally &) const override { left[lane.chain] = 1; }
+    std::int64_t long_bytes(std::int64_t n_bonds) const override {
+        return kernels_for_one_chain().scratch_bytes(n_bonds);
+    }
     bool is_left(const MoleculeUnit &unit) const {
         if (k.kept.is_kept(*unit.elimination)) return false;
         for (std::int64_t i = 0; i < unit.count; ++i) left[lane_of(unit, i).molecule] = 1;
@@ -31,6 +33,10 @@ struct KeepWork final : KeptWork {
     }
     void unit(const MoleculeUnit &unit, int, double *scratch, Tally &tally) const override {
         if (!is_left(unit)) k.kept.keep_molecules(call, unit, scratch, tally);
+    }
+    void long_chain(const Lane &lane, int, const Team &, double *store, Tally &tally) const override {
+        kernels_for_one_chain().kept.keep_chains(call, {&lane, 1, false, false}, store, tally);
+        if (!left[lane.chain]) left[lane.chain] = left_of_forces;
     }
 };
 
@@ -51,7 +57,10 @@ struct SolveWork final : KeptWork {
     void unit(const MoleculeUnit &unit, int where, double *scratch, Tally &tally) const override {
         if (k.kept.is_kept(*unit.elimination)) k.kept.solve_molecules(calls[where], unit, scratch, tally);
     }
-    void long_chain(const Lane &, int, const Team &, double *, Tally &) const override {}
+    void long_chain(const Lane &lane, int where, const Team &, double *store, Tally &tally) const override {
+        if (calls[where].rhs)
+            kernels_for_one_chain().kept.solve_chains(calls[where], {&lane, 1, false, false}, store, tally);
+    }
 };
 
 }  // namespace

@@ -5,6 +5,9 @@
 
 namespace holonomic {
 
+// What keep() marks molecules with: 1, or this where they are left of forces alone.
+constexpr unsigned char left_of_forces = 2;
+
 // Both mark the molecules that are left to the ordinary verbs. Throw std::bad_alloc before any work is done.
 void keep(const Chains &chains, const KeepCall &call);
 Tally solve_kept(const Chains &chains, const KeptCall &call);

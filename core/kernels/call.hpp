@@ -184,10 +184,11 @@ struct KeepCall {
 // Solves with them: with given right-hand sides, or with those of velocities and forces. Marks the molecules of which
 // nothing has been written: other ways are left to them. Those that are marked already are passed over.
 struct KeptCall {
-    AtomArray v, f, g;  // packed
+    AtomArray r, v, f, g;  // packed; r and the box are those of the factors
     const double *rhs;
     double *lambda, *tension;
-    bool add, virial, boxed;
+    bool add, virial;
+    Box box;
     const KeptFactors *kept;
     unsigned char *left;
 };

@@ -78,6 +78,70 @@ static void forces_agree_with_a_dense_solution_for_molecules_of_every_shape(void
     }
 }
 
+/** Forces on some atoms that are a millionth of those on others: multipliers that are small differences. */
+static void uneven_forces_agree_with_a_dense_solution(void **state)
+{
+    (void)state;
+    static const molecule_kind kinds[] = {MOLECULE_TREE, MOLECULE_RING, MOLECULE_COMB, MOLECULE_STAR, MOLECULE_CHAIN};
+    random_stream stream = random_seed(12);
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; ++k)
+        for (int size = 3; size < 30; size = size * 3 + 1) {
+            mixture m = mixture_of_kind(kinds[k], quick_run() ? 12 : 60, size, size + 3, MIXED, 400 + k);
+            for (size_t i = 0; i < mixture_size(&m) / 3; ++i) {
+                const double factor = random_uniform(&stream) < 0.2 ? 1 : 1e-6;
+                for (int c = 0; c < 3; ++c) m.f[3 * i + (size_t)c] *= factor;
+            }
+            for (int64_t p = 0; p < m.n_parts; ++p) mixture_take(&m, p, m.f, m.parts[p].f);
+            assert_solution(&m, NULL, m.f);
+            mixture_free(&m);
+        }
+}
+
+/**
+ * Right-hand sides of which some bonds have a millionth of what others have, so that multipliers are small
+ * differences.
+ */
+static void uneven_right_hand_sides_agree_with_a_dense_solution(void **state)
+{
+    (void)state;
+    enum { SIDES = 4 };
+    static const molecule_kind kinds[] = {MOLECULE_TREE, MOLECULE_RING, MOLECULE_COMB, MOLECULE_STAR, MOLECULE_CHAIN};
+    random_stream stream = random_seed(11);
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; ++k)
+        for (int size = 3; size < 30; size = size * 3 + 1) {
+            mixture m = mixture_of_kind(kinds[k], quick_run() ? 12 : 40, size, size + 3, MIXED, 300 + k);
+            const size_t bonds = (size_t)m.n_bonds, atoms = mixture_size(&m);
+            double *rhs = untouched(SIDES * bonds), *lambda = untouched(SIDES * bonds), *g = untouched(SIDES * atoms);
+            for (size_t i = 0; i < SIDES * bonds; ++i)
+                rhs[i] = random_normal(&stream) * pow(10, random_uniform(&stream) < 0.5 ? 0 : -6);
+            hol_factors *factors = factors_at(m.chains, m.r);
+            CHECK(hol_factors_solve(factors, SIDES, rhs, lambda, g, HOL_WRITE, NULL));
+            for (int64_t p = 0; p < m.n_parts; ++p)
+                for (size_t s = 0; s < SIDES; ++s) {
+                    const molecule *part = m.parts + p;
+                    const molecule_problem problem = molecule_problem_of(part);
+                    const long double unit = oracle_bound(part->n_bonds) * DBL_EPSILON;
+                    double *of = untouched((size_t)part->n_bonds), *found = untouched((size_t)part->n_bonds);
+                    double *pull = untouched(3 * (size_t)part->n_atoms);
+                    molecule_solution exact;
+                    mixture_take_bonds(&m, p, rhs + s * bonds, of);
+                    mixture_take_bonds(&m, p, lambda + s * bonds, found);
+                    mixture_take(&m, p, g + s * atoms, pull);
+                    assert_int_equal(molecule_solve(&problem, of, &exact), 0);
+                    for (int64_t b = 0; b < part->n_bonds; ++b)
+                        CHECK_AT_MOST(fabsl(found[b] - exact.lambda[b]), unit * exact.lambda_scale[b]);
+                    for (int64_t i = 0; i < 3 * part->n_atoms; ++i)
+                        if (exact.g_scale[i / 3] > 0)
+                            CHECK_AT_MOST(fabsl(pull[i] - exact.g[i]), unit * exact.g_scale[i / 3]);
+                    free(of), free(found), free(pull);
+                    molecule_solution_free(&exact);
+                }
+            hol_factors_destroy(factors);
+            free(rhs), free(lambda), free(g);
+            mixture_free(&m);
+        }
+}
+
 /** Chains of every length, in rows, lists and blocks that are not full, beside hol_forces. */
 static void chains_agree_with_hol_forces(void **state)
 {
@@ -85,7 +149,7 @@ static void chains_agree_with_hol_forces(void **state)
     const chain_kind kinds[] = {CHAIN_COIL, CHAIN_NEARLY_STRAIGHT, CHAIN_MASSES_1E6};
     for (int k = 0; k < 3; ++k)
         for (int how = 0; how < 2; ++how)
-            for (int64_t n = 1; n < 300; n = n < 12 ? n + 1 : n * 5 / 2) {
+            for (int64_t n = 1; n < 2000; n = n < 12 ? n + 1 : n * 5 / 2) {
                 assembly a = assembly_of_kind(kinds[k], 11, n, n % 3 ? n : n + 2, (arrangement)how, (uint64_t)n);
                 const size_t size = assembly_size(&a), bonds = (size_t)a.n_bonds;
                 double *lambda[2], *tension[2], *g[2], virial[2][9];
@@ -240,6 +304,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(forces_agree_with_a_dense_solution_for_molecules_of_every_shape),
+        cmocka_unit_test(uneven_forces_agree_with_a_dense_solution),
+        cmocka_unit_test(uneven_right_hand_sides_agree_with_a_dense_solution),
         cmocka_unit_test(chains_agree_with_hol_forces),
         cmocka_unit_test(right_hand_sides_are_solved_as_by_hol_solve),
         cmocka_unit_test(forces_may_replace_the_applied_ones_or_be_added_in_any_layout),

@@ -4,11 +4,10 @@
 #include "core/kernels/eliminate/listed.hpp"
 #include "core/kernels/eliminate/substitute.hpp"
 #include "core/kernels/kept/block.hpp"
+#include "core/kernels/kept/small.hpp"
 #include "core/kernels/memory/load.hpp"
 #include "core/kernels/memory/open.hpp"
 #include "core/kernels/memory/outputs.hpp"
-#include "core/kernels/memory/small.hpp"
-#include "core/kernels/memory/small_pulls.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
 namespace holonomic::HOL_ISA {
@@ -32,8 +31,28 @@ static mask keep_extended(const Block &block, const Reader &in, const System &s,
     return which & finite(extended.t[0]);
 }
 
+// Where a chunk of W bonds of which the bonds k0 .. are wanted is read: at k0, or as much in front of it as lets it end
+// with its lanes, which end together; -1: neither is possible.
+HOL_INLINE long chunk_at(const Block &block, long k0) {
+    if (__builtin_expect(k0 + W <= block.n_min, 1)) return k0;
+    return block.n_min == block.n && block.n >= W ? block.n - W : -1;
+}
+
+// Bonds as they stand in memory: to transpose twice changes nothing.
+static void keep_rows(const Block &block, const System &s, double *to) {
+    for (long k0 = 0; k0 < block.n; k0 += W) {
+        const long from = chunk_at(block, k0);
+        if (from < 0) continue;
+        vec *const row = rows(to, block.n, k0 / W);
+        for (int j = 0; j < 3; ++j) {
+            for (int i = 0; i < W; ++i) row[j * W + i] = (&s.D[from].x)[j * W + i];
+            transpose(row + j * W);
+        }
+    }
+}
+
 static void keep_block(const Block &block, const Lane *lane, const KeepCall &call, Arena arena, Tally &) {
-    double *const to = call.kept->room(call.kept->owner, block.chain[0], doubles(block.n));
+    double *const to = call.kept->room(call.kept->owner, block.chain[0], doubles_with_rows(block.n));
     if (!to) return leave(block, ~none(), call.left);
     const Packed r = open(call.r, block, lane, arena, true);
     const System s = kept::system(to, block.n, arena.vecs(block.n + W));
@@ -44,54 +63,13 @@ static void keep_block(const Block &block, const Lane *lane, const KeepCall &cal
     good = good & calm;
     if (any(block.in_use() & ~good))
         good = good | keep_extended(block, Reader(block, call.box, none_, r, {}, {}, true), s, ~good & calm, arena);
+    keep_rows(block, s, to);
     set_head(to, false, good & block.in_use());
     leave(block, ~good, call.left);
 }
 
-// Factors of small molecules, read and eliminated in registers. Returns the first molecule that is not done.
-template <class Place, bool uniform, bool boxed>
-static int64_t keep_small(const KeepCall &call, const Unit &unit, const Block &given, int64_t first) {
-    constexpr int N = Place::bonds;
-    const double *const r = reinterpret_cast<const double *>(call.r.x);
-    BlockMasses<Place> masses(given);
-    const int64_t end = Place::end(unit, first);
-    for (int64_t n; (n = Place::next(first, end)) > 0; first += n) {
-        const Place place(unit, first, n);
-        masses.take(place);
-        vec e[vectors_of<N>], t[N] = {};
-        double *const to = call.kept->room(call.kept->owner, place.chain_of(0), doubles(N));
-        if (!to) break;
-        const System s = kept::system(to, N, t);
-        load_bonds<boxed, false>(call.box, place, r, e, s.D);
-        const Source source = place.source(r, call.box);
-        Sweep<uniform, true> sweep{masses.block, source, s};
-        HOL_UNROLL
-        for (int k = 0; k < N; ++k)
-            sweep.step(
-                k, [&]() HOL_FORCED { return vec{}; }, k % 4 == 0, false);
-        if (__builtin_expect(any(sweep.flag() | ~sweep.calm()), 0)) break;
-        s.L[0] = s.L[N] = vec{};
-        set_head(to, true, first_lanes(static_cast<int>(n)));
-    }
-    return first;
-}
-
-static int64_t keep_small_ones(const KeepCall &call, const Unit &unit, Block &block, int64_t first, Tally &) {
-    return any_molecules(
-        unit, block, first, call.box.shape != Box::none, true, [&](auto place, auto uniform, auto boxed) {
-            return keep_small<typename decltype(place)::type, uniform, boxed>(call, unit, block, first);
-        });
-}
-
 void keep_chains(const KeepCall &call, const Unit &unit, double *scratch, Tally &tally) {
     for_each_block(call, unit, scratch, tally, keep_block, keep_small_ones);
-}
-
-// Where a chunk of W bonds of which the bonds k0 .. are wanted is read: at k0, or as much in front of it as lets it end
-// with its lanes, which end together; -1: neither is possible.
-HOL_INLINE long chunk_at(const Block &block, long k0) {
-    if (__builtin_expect(k0 + W <= block.n_min, 1)) return k0;
-    return block.n_min == block.n && block.n >= W ? block.n - W : -1;
 }
 
 // step(k, b) for the bonds k0 .. end - 1, of which bond k is number b in a chunk read from bond `from` on.
@@ -105,13 +83,10 @@ HOL_INLINE void for_chunk(long k0, long end, long from, const Step &step) {
     }
 }
 
-// Differences of a vector per atom along the bonds k0 .. k0 + W - 1, with inverse masses if there are `w`: out[0] is
-// that of bond `from`. Where a lane may end, what is behind counts as zeros.
+// Differences of a vector per atom along the bonds k0 .. k0 + W - 1, with inverse masses if there are `w`, where a lane
+// may end: what is behind counts as zeros.
 template <bool weigh>
-HOL_INLINE void differences(const Block &block, const Packed &x, const RowsOfLanes &rows, long from, long k0,
-                            vec3 *out) {
-    if (__builtin_expect(from >= 0, 1)) return subtract_chunk<false, weigh>(rows, from, out, nullptr, block.w3);
-    for (int b = 0; b < W; ++b) out[b] = vec3{};
+HOL_INLINE void differences(const Block &block, const Packed &x, long k0, vec3 *out) {
     for (int i = 0; i < block.lanes; ++i)
         for (long k = k0; k < k0 + W && k < block.len[i]; ++k)
             for (int c = 0; c < 3; ++c) {
@@ -120,22 +95,57 @@ HOL_INLINE void differences(const Block &block, const Packed &x, const RowsOfLan
             }
 }
 
+// Right-hand sides of the W bonds that are chunk number c, from bond `from` on: products of what stands in memory are
+// transposed alone, as load_chunks() does.
+template <bool weigh, bool has_v, bool has_f>
+HOL_INLINE void sides_of_chunk(const Block &block, const vec *d, const RowsOfLanes &of_v, const RowsOfLanes &of_f,
+                               long from, vec *B) {
+    constexpr int terms = (has_v ? velocity_squared : 0) | (has_f ? force_difference : 0);
+    vec p[3 * W];
+    HOL_UNROLL
+    for (int j = 0; j < 3; ++j) {
+        const long at = 3 * from + W * j;
+        HOL_UNROLL
+        for (int i = 0; i < W; ++i) {
+            vec dv = {}, df = {}, vv = {};
+            if (has_v) {
+                const double *const v = of_v.first + at + of_v.lane[i];
+                dv = load(v + 3) - load(v);
+                vv = square(terms, splat(block.mass[i]), dv);
+            }
+            if (has_f) {
+                const double *const f = of_f.first + at + of_f.lane[i], *const w = weigh ? block.w3[i] + at : nullptr;
+                df = weigh ? load(w + 3) * load(f + 3) - load(w) * load(f) : load(f + 3) - load(f);
+            }
+            p[j * W + i] = product(terms, d[j * W + i], dv, df, vv);
+        }
+        transpose(p + j * W);
+    }
+    HOL_UNROLL
+    for (int b = 0; b < W; ++b) B[b] = (p[3 * b] + p[3 * b + 1]) + p[3 * b + 2];
+}
+
 // Right-hand sides of all bonds into t, and the sweep up on the way. Returns the lanes in which nothing can overflow on
 // the way down, as Sweep::calm().
 template <bool weigh, bool has_v, bool has_f>
-HOL_NOINLINE mask substitute_sides(const Block &block, const System &s, const Packed &v, const Packed &f) {
+HOL_NOINLINE mask substitute_sides(const Block &block, const System &s, const double *kept, const Packed &v,
+                                   const Packed &f) {
     constexpr int terms = (has_v ? velocity_squared : 0) | (has_f ? force_difference : 0);
     const RowsOfLanes of_v(has_v ? v : f), of_f(has_f ? f : v);
     vec y = {}, size = {};
     for (long k0 = 0; k0 < block.n; k0 += W) {
-        vec3 dv[W], df[W];
-        const long from = chunk_at(block, k0);
-        if (has_v) differences<false>(block, v, of_v, from, k0, dv);
-        if (has_f) differences<weigh>(block, f, of_f, from, k0, df);
-        const long end = k0 + W < block.n ? k0 + W : block.n;
+        vec B[W];
+        const long from = chunk_at(block, k0), end = k0 + W < block.n ? k0 + W : block.n;
+        if (__builtin_expect(from >= 0, 1)) {
+            sides_of_chunk<weigh, has_v, has_f>(block, rows(kept, block.n, k0 / W), of_v, of_f, from, B);
+        } else {
+            vec3 dv[W] = {}, df[W] = {};
+            if (has_v) differences<false>(block, v, k0, dv);
+            if (has_f) differences<weigh>(block, f, k0, df);
+            for (long b = 0; b < end - k0; ++b) B[b] = right_hand_side(terms, block.mass, s.D[k0 + b], dv[b], df[b]);
+        }
         for_chunk(k0, end, from, [&](long k, long b) HOL_FORCED {
-            y = mul_add(s.L[k], y,
-                        right_hand_side(terms, block.mass, s.D[k], has_v ? dv[b] : vec3{}, has_f ? df[b] : vec3{}));
+            y = mul_add(s.L[k], y, B[b]);
             const vec u = y * s.pivots[k];
             s.t[k] = u;
             size = size + abs(u);
@@ -174,10 +184,17 @@ HOL_NOINLINE mask substitute_listed(const Block &block, const System &s, const A
 }
 
 // The same of values per bond that are given.
-HOL_NOINLINE void substitute_given(const Block &block, const System &s, const double *rhs) {
+HOL_NOINLINE mask substitute_given(const Block &block, const System &s, const double *rhs) {
     const vec half = 0.5 * block.mass;
-    vec y = {};
-    for (long k0 = 0; k0 < block.n; k0 += W) {
+    vec y = {}, size = {};
+    const double *const own = rhs + block.first_bond[0];
+    for (long k = 0; W == 1 && k < block.n; ++k) {
+        y = mul_add(s.L[k], y, half * own[k]);
+        const vec u = y * s.pivots[k];
+        s.t[k] = u;
+        size = size + abs(u);
+    }
+    for (long k0 = W == 1 ? block.n : 0; k0 < block.n; k0 += W) {
         vec b[W];
         const long end = k0 + W < block.n ? k0 + W : block.n;
         const long from = chunk_at(block, k0);
@@ -192,20 +209,27 @@ HOL_NOINLINE void substitute_given(const Block &block, const System &s, const do
         }
         for_chunk(k0, end, from, [&](long k, long i) HOL_FORCED {
             y = mul_add(s.L[k], y, half * b[i]);
-            s.t[k] = y * s.pivots[k];
+            const vec u = y * s.pivots[k];
+            s.t[k] = u;
+            size = size + abs(u);
         });
     }
+    return less(size, splat(largest_calm));
 }
 
 // Writes at once what the sweep down finds. Returns whether it is done; if not, nothing has been written.
 template <class Substitute, class Store>
-HOL_INLINE bool solve_at_once(const Block &block, const KeptCall &call, const double *from,
+HOL_INLINE bool solve_at_once(const Block &block, const System &s, const KeptCall &call, const double *from,
                               const Substitute &substitute, const Store &store) {
-    if (call.rhs || (!call.v.x && !call.f.x) || call.tension || call.virial || block.lanes < W ||
+    if ((call.rhs ? !call.g.x : !call.v.x && !call.f.x) || call.tension || call.virial || block.lanes < W ||
         any(~kept_lanes(from)))
         return false;
     mask calm = none();
-    choose([&](auto has_v, auto has_f) { calm = substitute(has_v, has_f); }, call.v.x != nullptr, call.f.x != nullptr);
+    if (call.rhs)
+        calm = substitute_given(block, s, call.rhs);
+    else
+        choose([&](auto has_v, auto has_f) { calm = substitute(has_v, has_f); }, call.v.x != nullptr,
+               call.f.x != nullptr);
     if (any(~calm)) return false;
     choose([&](auto add) { store(add); }, call.add);
     return true;
@@ -224,7 +248,7 @@ static void solve_block(const Block &block, const Lane *lane, const KeptCall &ca
     if (block.staged && listed(block, lane)) {
         const AtomLists at(lane);
         if (solve_at_once(
-                block, call, from,
+                block, s, call, from,
                 [&](auto has_v, auto has_f) {
                     return substitute_listed<has_v, has_f>(block, s, at, base_of(call.v), base_of(call.f));
                 },
@@ -238,10 +262,10 @@ static void solve_block(const Block &block, const Lane *lane, const KeptCall &ca
     const Update update = call.add && in_place(call.g, block) ? add_ : write_;  // else unstage() adds
     if (!block.staged &&
         solve_at_once(
-            block, call, from,
+            block, s, call, from,
             [&](auto has_v, auto has_f) {
-                return block.uniform_w ? substitute_sides<false, has_v, has_f>(block, s, v, f)
-                                       : substitute_sides<true, has_v, has_f>(block, s, v, f);
+                return block.uniform_w ? substitute_sides<false, has_v, has_f>(block, s, from, v, f)
+                                       : substitute_sides<true, has_v, has_f>(block, s, from, v, f);
             },
             [&](auto add) { substitute_and_store<add ? add_ : write_>(block, s, g, call.lambda, half); }))
         return;
@@ -252,8 +276,8 @@ static void solve_block(const Block &block, const Lane *lane, const KeptCall &ca
     else
         choose(
             [&](auto has_v, auto has_f) {
-                block.uniform_w ? substitute_sides<false, has_v, has_f>(block, s, v, f)
-                                : substitute_sides<true, has_v, has_f>(block, s, v, f);
+                block.uniform_w ? substitute_sides<false, has_v, has_f>(block, s, from, v, f)
+                                : substitute_sides<true, has_v, has_f>(block, s, from, v, f);
             },
             call.v.x != nullptr, call.f.x != nullptr);
     backward(0, block.n, s.t, s.L);
@@ -270,71 +294,6 @@ static void solve_block(const Block &block, const Lane *lane, const KeptCall &ca
         store_pulls(block, s.D, s.t, good, update, g);
         close(call.g, block, lane, good, g, call.add);
     }
-}
-
-// Small molecules. Returns the first one that is not done.
-template <class Place, bool uniform>
-static int64_t solve_small(const KeptCall &call, const Unit &unit, const Block &given, int64_t first, Tally &tally) {
-    constexpr int N = Place::bonds;
-    const auto base = [](const AtomArray &a) { return reinterpret_cast<double *>(a.x); };
-    BlockMasses<Place> masses(given);
-    const Block &block = masses.block;
-    const int64_t end = Place::end(unit, first);
-    for (int64_t n; (n = Place::next(first, end)) > 0; first += n) {
-        const Place place(unit, first, n);
-        const double *const from = call.kept->block[place.chain_of(0)];
-        if (!from || !is_small(from)) break;
-        masses.take(place);
-        vec t[N], e[vectors_of<N>], *const L = multipliers(from, N), *const P = pivots(from, N);
-        const vec3 *const D = bonds(from);
-        vec3 dv[N] = {}, df[N] = {}, *const x = reinterpret_cast<vec3 *>(e);
-        if (call.rhs) {
-            for (int k = 0; k < N; ++k)
-                for (int i = 0; i < W; ++i) t[k][i] = call.rhs[place.bond_of(i) + k];
-            for (int k = 0; k < N; ++k) t[k] = (0.5 * block.mass) * t[k];
-        } else {
-            if (call.v.x) {
-                load_molecules(place, base(call.v), e);
-                HOL_UNROLL
-                for (int k = 0; k < N; ++k) dv[k] = x[k + 1] - x[k];
-            }
-            if (call.f.x) {
-                load_molecules(place, base(call.f), e);
-                HOL_UNROLL
-                for (int k = 0; k < N; ++k)
-                    df[k] = uniform ? x[k + 1] - x[k] : block.w[k + 1] * x[k + 1] - block.w[k] * x[k];
-            }
-            HOL_UNROLL
-            for (int k = 0; k < N; ++k)
-                t[k] = call.v.x ? right_hand_side(velocity_squared | force_difference, block.mass, D[k], dv[k], df[k])
-                                : right_hand_side(force_difference, block.mass, D[k], dv[k], df[k]);
-        }
-        vec y = {};
-        HOL_UNROLL
-        for (int k = 0; k < N; ++k) {
-            y = k == 0 ? t[0] : mul_add(L[k], y, t[k]);
-            t[k] = y * P[k];
-        }
-        backward(0, N, t, L);
-        if (__builtin_expect(any(~finite(t[0])), 0)) {
-            for (int64_t i = 0; i < n; ++i) call.left[place.chain_of(static_cast<int>(i))] = 1;
-            continue;
-        }
-        if (call.g.x) store_pulls(D, t, place, base(call.g), call.add);
-        if (call.virial) add_virial(N, D, t, first_lanes(static_cast<int>(n)), splat(1.0), tally);
-        if (call.lambda) store_multipliers(place, t, splat(0.5), call.lambda);
-        if (call.tension) {
-            for (int k = 0; k < N; ++k) t[k] = t[k] * sqrt(dot(D[k], D[k]));
-            store_multipliers(place, t, splat(1.0), call.tension);
-        }
-    }
-    return first;
-}
-
-static int64_t solve_small_ones(const KeptCall &call, const Unit &unit, Block &block, int64_t first, Tally &tally) {
-    return any_molecules(unit, block, first, call.boxed, true, [&](auto place, auto uniform, auto) {
-        return solve_small<typename decltype(place)::type, uniform>(call, unit, block, first, tally);
-    });
 }
 
 void solve_kept_chains(const KeptCall &call, const Unit &unit, double *scratch, Tally &tally) {

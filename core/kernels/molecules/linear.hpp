@@ -55,23 +55,13 @@ struct Linear {
     void solve_for_rates() {
         const Molecules<V> &y = x;
         const Vector3<V> *const speed = v;
-        solve_again<false>([&](int32_t place, int32_t from, int32_t to) HOL_FORCED {
+        solve_again([&](int32_t place, int32_t from, int32_t to) HOL_FORCED {
             BondRow<V> &row = y.row[place];
             row.t = dot(row.d, speed[to] - speed[from]);
             if (y.in.strain) row.t = row.t + stretching(y.in.strain, row.d);
         });
         down_and_pull<false>();
     }
-    // For right-hand sides that side(place, from, to) puts into t of the row of the bond between two slots.
-    template <class Side>
-    void solve_for(const Side &side) {
-        solve_again<true>(side);
-        down_and_pull<true>();
-    }
-    // What a later solve needs of an elimination: that many values, from the rows on.
-    V *factors() const { return &x.row->d.x; }
-    int64_t n_factors() const { return &r->x - factors(); }
-
     // G of all atoms by slot, once all is solved.
     Vector3<V> *pulls() const { return r; }
 
@@ -85,11 +75,11 @@ private:
 
     // Up, and back to the bonds at the root, or the ring and the bonds at its atoms. Right-hand sides are found on the
     // way.
-    template <bool look, class Side>
+    template <class Side>
     __attribute__((noinline)) void solve_again(const Side &side) {
         const Molecules<V> &y = x;
         for (int32_t p = 0; p < x.s.n_core; ++p) side(x.s.n_tree + p, x.s.from[p], x.s.to[p]);
-        substitute_trees<look>(x, working, [&](int32_t slot) HOL_FORCED { side(slot, y.s.parent[slot], slot); });
+        substitute_trees(x, working, [&](int32_t slot) HOL_FORCED { side(slot, y.s.parent[slot], slot); });
         if (x.s.type == EliminationPlan::ring)
             choose(
                 [&](auto bare) HOL_FORCED {

@@ -17,11 +17,6 @@ unsigned load_and_solve(Linear<double> &, int terms, bool masses_known);
 void solve_for_rates(Linear<vec> &);
 void solve_for_rates(Linear<double> &);
 
-// With factors that were kept, for values per bond that are given, or velocities and forces. Returns the lanes that
-// this answers for.
-unsigned solve_kept(Linear<vec> &, const AtomArray &v, const AtomArray &f, const double *rhs);
-unsigned solve_kept(Linear<double> &, const AtomArray &v, const AtomArray &f, const double *rhs);
-
 // Reads the molecules and solves by sparse LDL^T. Returns the lanes that this answers for.
 unsigned solve_and_refine(const LdlLinear<vec> &);
 unsigned solve_and_refine(const LdlLinear<double> &);

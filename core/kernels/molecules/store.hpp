@@ -82,10 +82,10 @@ HOL_INLINE void pull_top(const Molecules<V> &x, Vector3<V> *pull) {
 // Writes value(place) of the bonds at these places to out[bond] of the lanes in `which`. To look whether four bonds
 // follow each other takes more instructions than it saves, in rings, too.
 template <class V, class Value>
-HOL_INLINE void write_values(const int32_t *bond_of, const MoleculeLane *lane, double *out, unsigned which,
+HOL_INLINE void write_values(const int32_t *bond_of, const int64_t *first_bond, double *out, unsigned which,
                              int32_t first, int32_t end, const Value &value) {
     double *p[Width<V>::lanes];
-    for (int i = 0; i < Width<V>::lanes; ++i) p[i] = out + lane[i].first_bond;
+    for (int i = 0; i < Width<V>::lanes; ++i) p[i] = out + first_bond[i];
     const bool all = which == (1u << Width<V>::lanes) - 1;
     for (int32_t k = first; k < end; ++k) {
         if (Width<V>::lanes == 1 && k + rows_ahead < end) __builtin_prefetch(p[0] + bond_of[k + rows_ahead], 1, 2);
@@ -99,6 +99,14 @@ HOL_INLINE void write_values(const int32_t *bond_of, const MoleculeLane *lane, d
                 if (which >> i & 1) p[i][bond] = Width<V>::get(one, i);
         }
     }
+}
+
+template <class V, class Value>
+HOL_INLINE void write_values(const int32_t *bond_of, const MoleculeLane *lane, double *out, unsigned which,
+                             int32_t first, int32_t end, const Value &value) {
+    int64_t first_bond[Width<V>::lanes];
+    for (int i = 0; i < Width<V>::lanes; ++i) first_bond[i] = lane[i].first_bond;
+    write_values<V>(bond_of, first_bond, out, which, first, end, value);
 }
 
 // Writes factor t of the bonds at these places, zeros as +0. with_length: |d| is the factor.

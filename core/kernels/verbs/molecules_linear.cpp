@@ -31,35 +31,6 @@ void solve_for_rates(Linear<vec> &z) { z.solve_for_rates(); }
 void solve_for_rates(Linear<double> &z) { z.solve_for_rates(); }
 
 template <class V>
-static inline unsigned solve_kept_lanes(Linear<V> &z, const AtomArray &v, const AtomArray &f, const double *rhs) {
-    z.x.in = {&v, &f, rhs, false};
-    const Loader<V> load = {z, 0};
-    if (!rhs && v.x) load.read_atoms(v, Slots<V>(z.v));
-    if (!rhs && f.x) load.read_atoms(f, Slots<V>(z.f));
-    choose(
-        [&](auto has_v, auto has_f) HOL_FORCED {
-            z.solve_for([&](int32_t place, int32_t from, int32_t to) HOL_FORCED {
-                BondRow<V> &row = z.x.row[place];
-                V b = {};
-                if (has_v) {
-                    const Vector3<V> dv = z.v[to] - z.v[from];
-                    b = dot(dv, dv);
-                }
-                if (has_f) b = Loader<V>::with_pull(row.d, z.x.w[from], z.f[from], z.x.w[to], z.f[to], b);
-                row.t = rhs ? load.given_value(place) : b;
-            });
-        },
-        !rhs && v.x, !rhs && f.x);
-    return good_lanes(z);
-}
-unsigned solve_kept(Linear<vec> &z, const AtomArray &v, const AtomArray &f, const double *rhs) {
-    return solve_kept_lanes(z, v, f, rhs);
-}
-unsigned solve_kept(Linear<double> &z, const AtomArray &v, const AtomArray &f, const double *rhs) {
-    return solve_kept_lanes(z, v, f, rhs);
-}
-
-template <class V>
 static inline unsigned prove_or_refine(const LdlLinear<V> &x) {
     const unsigned proven = LdlErrorBound<V>::solve(x);
     return proven == bits(x.in_use()) ? proven : LdlRefinement<V>(x).refine(proven);

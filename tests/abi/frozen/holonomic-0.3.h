@@ -967,12 +967,12 @@ HOL_API void hol_factors_destroy(hol_factors *factors);
 /**
  * Makes the factors at these positions, in the box and with the rate of the box that the set has now; they belong to
  * these until the next update. It costs about what hol_forces does, allocates at the first time and after a change of
- * the set, and keeps 5 to 13 doubles per bond and 3 per atom.
+ * the set, and keeps 5 to 16 doubles per bond and 4 per atom. So it pays from about three solves on.
  *
- * Chains of up to 256 bonds, trees and rings of up to 2048 and triangles are kept. Of longer and larger ones, other
- * cycles, rigid bodies, molecules that plain products do not answer for, and all of a set that shares fixed atoms among
- * molecules, the positions are kept: their solves cost what hol_forces and hol_solve do. All are right to the bound of
- * these.
+ * Chains, trees and rings of up to 2048 bonds and triangles are kept; chains of more than 256 bonds for
+ * hol_factors_solve alone. Of larger ones, other cycles, rigid bodies, molecules that plain products do not answer for,
+ * and all of a set that shares fixed atoms among molecules, the positions are kept: their solves cost what hol_forces
+ * and hol_solve do. All are right to the bound of these.
  * @param[in,out] factors
  * @param[in]     r        positions [n_atoms][3]. Copied
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_NOT_FINITE; HOL_ERR_DEGENERATE; HOL_ERR_MEMORY. After a bad molecule all others

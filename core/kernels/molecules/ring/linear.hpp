@@ -189,7 +189,7 @@ static inline void substitute_ring(const Molecules<V> &x, const Ring<V> &ring) {
                 reach += 2 * known;
                 x.row[before].t = y_to;
                 x.row[slot].t = y_from;
-                substitute_joint<known, true, true>(rows, known, Memory<V>());
+                substitute_joint<known, true>(rows, known, Memory<V>());
             }
         });
         if (slot == first) return;

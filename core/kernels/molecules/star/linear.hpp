@@ -149,12 +149,20 @@ struct StarForcesVerb {
     __attribute__((noinline)) unsigned solve(const StarAtoms<where, N, V> &atoms, const MoleculeLane *,
                                              const StarMasses<N, V> &m, MaskOf<V> in_use) const {
         Vector3<V> r[N + 1];
-        V y[N], t[N];
+        V y[N];
         Star<N, V> star(m);
         atoms.read(call.r, r);
         atoms.take_bonds(r, call.box, star.d);
         star.invert();
         find_sides(atoms, star, y);
+        return finish(atoms, star, y, in_use);
+    }
+
+    // Solves and writes. Returns the lanes that are done.
+    template <Inlined where, int N, class V>
+    inline HOL_FORCED unsigned finish(const StarAtoms<where, N, V> &atoms, Star<N, V> &star, const V *y,
+                                      MaskOf<V> in_use) const {
+        V t[N];
         star.solve(y, t);
         const unsigned good = bits(in_use & star.good(y, t));
         if (!good) return good;
@@ -170,9 +178,10 @@ struct StarForcesVerb {
         Vector3<V> g[N + 1];
         star.pull(t, g);
         if (call.add) {
-            atoms.read(call.g, r);
+            Vector3<V> before[N + 1];
+            atoms.read(call.g, before);
             HOL_UNROLL
-            for (int i = 0; i <= N; ++i) g[i] = r[i] + g[i];
+            for (int i = 0; i <= N; ++i) g[i] = before[i] + g[i];
         }
         atoms.write(call.g, g, good);
         return good;

@@ -127,8 +127,8 @@ HOL_INLINE void up_joint(const Rows &x, int count, Memory<V> memory, V &margin) 
     for (int a = 0; a < k; ++a) x.bond(a).t = f.l[a];
 }
 
-// The same for another right-hand side. look: the result will be compared with E, which gets y r.
-template <int known, bool top, bool look, class V, class Rows>
+// The same for another right-hand side.
+template <int known, bool top, class V, class Rows>
 HOL_INLINE void substitute_joint(const Rows &x, int count, Memory<V> memory) {
     const int k = known > 0 ? known : count;
     if (!top && k > most_decomposed) return substitute_many<V>(x, k);
@@ -140,7 +140,6 @@ HOL_INLINE void substitute_joint(const Rows &x, int count, Memory<V> memory) {
         const BondRow<V> &row = x.bond(a);
         f.y[a] = row.t;
         f.r[a] = row.r;
-        if (look) x.bond(a).E = row.t * row.r;
         if (!top) y = mul_add(row.l, row.t, y);
         HOL_UNROLL_FEW
         for (int b = 0; b < a; ++b) f.m[pair_of(a, b)] = m[pair_of(a, b)];
@@ -173,7 +172,7 @@ static inline void up_trees(Molecules<V> &x, Memory<V> memory) {
 }
 
 // Calls before(slot) at each atom, which may make the right-hand side of the bond above it.
-template <bool look, class V, class Before>
+template <class V, class Before>
 HOL_INLINE void substitute_trees(const Molecules<V> &x, Memory<V> memory, const Before &before) {
     const Molecules<V> *const molecules = &x;
     for (int32_t slot = 0; slot < x.s.n_tree; ++slot) {
@@ -181,10 +180,10 @@ HOL_INLINE void substitute_trees(const Molecules<V> &x, Memory<V> memory, const 
         const int k = x.s.child_start[slot + 1] - x.s.child_start[slot];
         if (k > 0)
             choose_mostly<3>(k, [=](auto known) HOL_FORCED {
-                substitute_joint<known, false, look>(AtomRows<V, known>(*molecules, slot), k, memory);
+                substitute_joint<known, false>(AtomRows<V, known>(*molecules, slot), k, memory);
             });
     }
-    if (x.s.type == EliminationPlan::tree) substitute_joint<1, true, look>(AtomRows<V, 1>(x, x.s.n_tree), 1, memory);
+    if (x.s.type == EliminationPlan::tree) substitute_joint<1, true>(AtomRows<V, 1>(x, x.s.n_tree), 1, memory);
 }
 
 // Goes down at one atom: u of its children becomes t, from t of the bond above. `look`: tests the result. pulled: adds

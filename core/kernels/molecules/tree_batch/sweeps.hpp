@@ -141,11 +141,11 @@ inline __attribute__((noinline)) void BatchLinear::substitute(const Range &range
         choose_few<3>(k, [&](auto known) HOL_FORCED {
             const BatchJoint joint(*this, s);
             joint.read_t();
-            substitute_joint<known, false, false>(joint, k, memory);
+            substitute_joint<known, false>(joint, k, memory);
             joint.write_t();
         });
     }
-    if (range.root) substitute_joint<1, true, false>(BatchJoint(*this, f.n_steps - 1), 1, memory);
+    if (range.root) substitute_joint<1, true>(BatchJoint(*this, f.n_steps - 1), 1, memory);
 }
 
 // u of the children becomes t, and atoms get their pulls, as in down_joint(). `look`: tests the result.
