@@ -74,7 +74,7 @@ void Molecules::make() {
     threads = std::max(1, gmx_omp_nthreads_get(ModuleMultiThread::Lincs));
     check(hol_chains_set_threads(made, threads));
     // A hundredth of what single precision can hold: displacements are rounded to that.
-    if (!GMX_DOUBLE) check(hol_chains_set_tolerance(made, 1e-9));
+    if (!GMX_DOUBLE) check(hol_chains_set_tolerance(made, 1e-8));
     // Once they have run, a molecule that went astray must not keep the others from being solved.
     if (!is_first) check(hol_chains_set_checks(made, HOL_NEVER));
 }

@@ -39,8 +39,8 @@ bool Rank::positions(const Call &call, bool wants_rmsd) {
         x.resize(3 * molecules.n_atoms());
         q.resize(x.size());
         change.assign(x.size(), 0);
-        copy_whole(places, call.pbc, call.x, x.data(), n_threads);
-        copy_whole(places, call.pbc, call.q, q.data(), n_threads);
+        const double near = no_turn(molecules, call);
+        bool may_turn = !copy_both_whole(places, call.pbc, call.x, call.q, x.data(), q.data(), near / 2, n_threads);
         molecules.set_flexible(x.data());
         double *const lambda = multipliers_if(call.dvdlambda && molecules.perturbed());
         // In a step of length 1 the change of velocities is that of positions.
@@ -51,8 +51,9 @@ bool Rank::positions(const Call &call, bool wants_rmsd) {
         status = project(call.virial);
         if (status == HOL_ERR_LENGTHS && call.x == call.q) status = move_crude_start();
         if (lambda && status == HOL_OK) *call.dvdlambda += derivative_by_lambda();
-        move(places, change.data(), call.inverse_dt, call.q, call.v, n_threads);
-        if (call.max_warnings < INT_MAX && (status != HOL_OK || any_turned(molecules, call, x.data(), q.data()))) {
+        may_turn |= !move(places, change.data(), call.inverse_dt, call.q, call.v, near / 8, n_threads);
+        const auto turned = [&] { return may_turn && any_turned(molecules, call, x.data(), q.data()); };
+        if (call.max_warnings < INT_MAX && (status != HOL_OK || turned())) {
             std::string words;
             int64_t n_unsolved = 0;
             if (status != HOL_OK) {

@@ -48,6 +48,9 @@ struct Deviation {
 };
 Deviation deviation(const Molecules &, const t_pbc *, const real *q);
 
+// No bond turns by that angle in a step in which each atom moves by less: by half of this in each direction, and then
+// by an eighth.
+double no_turn(const Molecules &, const Call &);
 // Whether a bond has turned by more than lincs-warnangle between x and q.
 bool any_turned(const Molecules &, const Call &, const double *x, const double *q);
 // Tells and counts what GROMACS does: molecules that could not be solved, in `words`, and turned bonds.
