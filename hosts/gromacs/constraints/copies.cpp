@@ -58,15 +58,25 @@ struct Box {
     Four half_squared = {far, far, far, far};
 };
 
-// Calls each(start, end) for all molecules, by their places; true if it says so of all.
+// Calls each(k) for 0 <= k < n; true if it says so of all. One thread begins no team: that takes as long as many molecules.
+template <typename Each>
+bool for_all(int64_t n, int n_threads, const Each &each) {
+    bool all_true = true;
+    if (n_threads == 1) {
+        for (int64_t k = 0; k < n; k++) all_true &= each(k);
+        return all_true;
+    }
+#pragma omp parallel for num_threads(n_threads) schedule(static) reduction(& : all_true)
+    for (int64_t k = 0; k < n; k++) all_true &= each(k);
+    return all_true;
+}
+
+// Calls each(start, end) for all molecules, by their places.
 template <typename Each>
 bool for_molecules(const Arrangement &arrangement, int n_threads, const Each &each) {
-    const auto n = static_cast<int64_t>(arrangement.starts.size()) - 1;
     const int *const starts = arrangement.starts.data();
-    bool all_true = true;
-#pragma omp parallel for num_threads(n_threads) schedule(static) reduction(& : all_true) if (n_threads > 1)
-    for (int64_t m = 0; m < n; m++) all_true &= each(starts[m], starts[m + 1]);
-    return all_true;
+    return for_all(static_cast<int64_t>(arrangement.starts.size()) - 1, n_threads,
+                   [=](int64_t m) { return each(starts[m], starts[m + 1]); });
 }
 
 // A molecule that a face of the box cuts.
@@ -134,45 +144,41 @@ bool copy_both_whole(const Arrangement &arrangement, const t_pbc *pbc, const rea
 }
 
 void copy(const Arrangement &arrangement, const real *from, double *to, int n_threads) {
-    const auto n = static_cast<int64_t>(arrangement.atoms.size());
     const int *const atoms = arrangement.atoms.data();
-#pragma omp parallel for num_threads(n_threads) schedule(static) if (n_threads > 1)
-    for (int64_t k = 0; k < n; k++)
+    for_all(static_cast<int64_t>(arrangement.atoms.size()), n_threads, [=](int64_t k) {
         for (int a = 0; a < 3; a++) to[3 * k + a] = from[3 * static_cast<ptrdiff_t>(atoms[k]) + a];
+        return true;
+    });
 }
 
 bool move(const Arrangement &arrangement, const double *d, double inverse_dt, real *q, real *v, double near,
           int n_threads) {
-    const auto n = static_cast<int64_t>(arrangement.atoms.size());
     const int *const atoms = arrangement.atoms.data();
-    const double square = near * near;
-    bool all_near = true;
-#pragma omp parallel for num_threads(n_threads) schedule(static) reduction(& : all_near) if (n_threads > 1)
-    for (int64_t k = 0; k < n; k++) {
+    return for_all(static_cast<int64_t>(arrangement.atoms.size()), n_threads, [=](int64_t k) {
         const double x = d[3 * k], y = d[3 * k + 1], z = d[3 * k + 2];
-        all_near &= x * x + y * y + z * z <= square;
         real *const here = q + 3 * static_cast<ptrdiff_t>(atoms[k]);
         here[0] = static_cast<real>(here[0] + x);
         here[1] = static_cast<real>(here[1] + y);
         here[2] = static_cast<real>(here[2] + z);
-        if (v == nullptr) continue;
-        real *const velocity = v + 3 * static_cast<ptrdiff_t>(atoms[k]);
-        velocity[0] = static_cast<real>(velocity[0] + inverse_dt * x);
-        velocity[1] = static_cast<real>(velocity[1] + inverse_dt * y);
-        velocity[2] = static_cast<real>(velocity[2] + inverse_dt * z);
-    }
-    return all_near;
+        if (v != nullptr) {
+            real *const velocity = v + 3 * static_cast<ptrdiff_t>(atoms[k]);
+            velocity[0] = static_cast<real>(velocity[0] + inverse_dt * x);
+            velocity[1] = static_cast<real>(velocity[1] + inverse_dt * y);
+            velocity[2] = static_cast<real>(velocity[2] + inverse_dt * z);
+        }
+        return x * x + y * y + z * z <= near * near;
+    });
 }
 
 void hand_back(const Arrangement &arrangement, const double *p, const real *q, real *projected, int n_threads) {
-    const auto n = static_cast<int64_t>(arrangement.atoms.size());
     const int *const atoms = arrangement.atoms.data();
-#pragma omp parallel for num_threads(n_threads) schedule(static) if (n_threads > 1)
-    for (int64_t k = 0; k < n; k++)
+    for_all(static_cast<int64_t>(arrangement.atoms.size()), n_threads, [=](int64_t k) {
         for (int a = 0; a < 3; a++) {
             const ptrdiff_t i = 3 * static_cast<ptrdiff_t>(atoms[k]) + a;
             projected[i] = static_cast<real>(projected == q ? p[3 * k + a] : projected[i] + (p[3 * k + a] - q[i]));
         }
+        return true;
+    });
 }
 
 }  // namespace holonomic
