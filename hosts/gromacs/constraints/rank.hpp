@@ -35,6 +35,7 @@ struct Rank {
 private:
     double *multipliers_if(bool wanted);
     double derivative_by_lambda() const;
+    void add_own_virial(double *) const;
     int move_crude_start();
     void measure(const Call &);
 
@@ -43,7 +44,7 @@ private:
 
 // What is left of the constraints at q, in the precision of GROMACS.
 struct Deviation {
-    double sum_of_squares = 0, largest = 0;
+    double n_bonds = 0, sum_of_squares = 0, largest = 0;
     size_t bond = 0;  // of the largest
 };
 Deviation deviation(const Molecules &, const t_pbc *, const real *q);

@@ -53,7 +53,8 @@ Deviation deviation(const Molecules &molecules, const t_pbc *pbc, const real *q)
     for (size_t k = 0; k < molecules.n_bonds(); k++) {
         const Vector d = along(molecules.places().bonds[k], whole.data());
         const double off = std::fabs(std::sqrt(dot(d, d)) / molecules.length(k) - 1);
-        result.sum_of_squares += off * off;
+        result.n_bonds += molecules.share(k);
+        result.sum_of_squares += molecules.share(k) * off * off;
         if (off > result.largest) {
             result.largest = off;
             result.bond = k;
@@ -88,7 +89,7 @@ void warn(const Molecules &molecules, const Call &call, const std::string &words
             ", time %g (ps)  CONSTRAINT WARNING\n"
             "relative constraint deviation: rms %.6f, max %.6f (between atoms %d and %d)\n",
             call.step, double(call.parameters.init_t + call.step * call.parameters.delta_t),
-            std::sqrt(left.sum_of_squares / static_cast<double>(molecules.n_bonds())), left.largest,
+            std::sqrt(left.sum_of_squares / left.n_bonds), left.largest,
             molecules.number(worst.first), molecules.number(worst.second));
     if (n_unsolved > 0)
         fprintf(stderr, "%" PRId64 " molecule%s could not be solved: %s\n", n_unsolved, n_unsolved == 1 ? "" : "s",

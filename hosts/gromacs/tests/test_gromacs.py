@@ -369,8 +369,41 @@ class Ranks(Case):
                 g.mdrun(self.folder, "-ntmpi", ranks, "-dlb", "no", name="exact")
                 self.assert_same(tuple(g.energies(self.folder, ALL, g.DOUBLE, name) for name in ("lincs", "exact")))
 
-    def test_molecules_across_ranks_are_refused(self):
-        self.scene([(s.alkane(4), 125)], 1.0, constraints="all-bonds", nsteps=2)
+    def test_molecules_that_domains_cut(self):
+        """Each rank solves those of which it has an atom, and counts its part of the sums."""
+        for integrator, ranks in (("md", "2"), ("md-vv", "2"), ("md", "4")):
+            with self.subTest(integrator=integrator, ranks=ranks):
+                self.scene([(s.alkane(4), 125)], 1.0, integrator=integrator, constraints="all-bonds", nsteps=8, nstlist=4)
+                g.mdrun(self.folder, name="one")
+                g.mdrun(self.folder, "-ntmpi", ranks, name="exact")
+                self.assert_same(tuple(g.energies(self.folder, ALL, g.DOUBLE, name) for name in ("one", "exact")))
+
+    def test_free_energy_of_molecules_that_domains_cut(self):
+        a = s.alkane(3)
+        molecule = s.Molecule("PER", [(kind, name, m, 1.3 * m) for kind, name, m in a.atoms], a.places, angles=a.angles,
+                              constraints=[(i, j, length, 1.05 * length) for i, j, length, _ in a.bonds])
+        self.scene([(molecule, 125)], 1.0, free_energy="yes", nstdhdl=1, init_lambda=0.5, nstlist=5, nsteps=6)
+        g.mdrun(self.folder, name="one")
+        g.mdrun(self.folder, "-ntmpi", "2", name="exact")
+        self.assert_same(tuple(g.energies(self.folder, ALL + ["dVremain/dl"], g.DOUBLE, name) for name in ("one", "exact")))
+
+    def test_a_membrane_on_one_two_and_four_ranks(self):
+        """Its cholesterol, with virtual sites and a tail, is no update group."""
+        membrane.write(self.folder)
+        quiet = dict(coulombtype="reaction-field", epsilon_rf=0, epsilon_r=15, lincs_order=4)
+        s.write_mdp(self.folder, **quiet, integrator="steep", nsteps=30, emtol=100, gen_vel="no")
+        g.grompp(self.folder)
+        g.mdrun(self.folder, name="relaxed")
+        s.write_mdp(self.folder, **quiet, nsteps=8, dt=0.01, nstlist=4)
+        g.grompp(self.folder, g.DOUBLE, "-c", "relaxed.gro")
+        g.mdrun(self.folder, name="one")
+        for ranks in ("2", "4"):
+            with self.subTest(ranks=ranks):
+                g.mdrun(self.folder, "-ntmpi", ranks, name="exact")
+                self.assert_same(tuple(g.energies(self.folder, ALL, g.DOUBLE, name) for name in ("one", "exact")))
+
+    def test_molecules_that_reach_too_far_are_refused(self):
+        self.scene([(s.chain(30), 27)], 3.0, nsteps=2, lincs_order=4)
         for ranks in ("2", "4"):
             with self.subTest(ranks=ranks), self.assertRaisesRegex(g.Failed, r"mdrun\s+-ntmpi\s+1\s+-ntomp\s+N"):
                 g.mdrun(self.folder, "-ntmpi", ranks, name="exact")
