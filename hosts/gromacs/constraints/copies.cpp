@@ -9,8 +9,8 @@ namespace holonomic {
 
 namespace {
 
-// An atom's vector as one of four numbers: its components are worked on together. The fourth is of no meaning: arrays of
-// positions are padded, so that it may be read.
+// An atom's vector as one of four numbers: its components are worked on together. The fourth is of no meaning: arrays
+// of positions are padded, so that it may be read.
 typedef real Four __attribute__((vector_size(4 * sizeof(real))));
 typedef decltype(Four{} < Four{}) Flags;
 typedef Four UnalignedFour __attribute__((aligned(sizeof(real)), may_alias));
@@ -58,7 +58,8 @@ struct Box {
     Four half_squared = {far, far, far, far};
 };
 
-// Calls each(k) for 0 <= k < n; true if it says so of all. One thread begins no team: that takes as long as many molecules.
+// Calls each(k) for 0 <= k < n; true if it says so of all. One thread begins no team: that takes as long as many
+// molecules.
 template <typename Each>
 bool for_all(int64_t n, int n_threads, const Each &each) {
     bool all_true = true;

@@ -1,6 +1,7 @@
 // Molecules that borders of domains cut. GROMACS gives each rank the constraints of its own atoms and those that are up
-// to lincs-order + 1 bonds away, with positions of all their atoms, before it calls. Where that is all of a molecule, each
-// rank that has an atom of it solves the same equations, and keeps what is its own: no more is sent than for LINCS.
+// to lincs-order + 1 bonds away, with positions of all their atoms, before it calls. Where that is all of a molecule,
+// each rank that has an atom of it solves the same equations, and keeps what is its own: no more is sent than for
+// LINCS.
 #pragma once
 #include <string>
 #include <vector>
@@ -27,8 +28,8 @@ private:
     std::vector<std::vector<int>> counts;  // by type of molecule
 };
 
-// Leaves the bonds of molecules of which the rank has an atom, the first `n_home`. Returns an atom whose bonds are not all
-// there, or -1. number(atom): in the topology, from 0.
+// Leaves the bonds of molecules of which the rank has an atom, the first `n_home`. Returns an atom whose bonds are not
+// all there, or -1. number(atom): in the topology, from 0.
 template <typename Number>
 int leave_own(std::vector<Bond> &list, int n_atoms, int n_home, const Topology &topology, const Number &number) {
     std::vector<int> root(n_atoms), n_bonds(n_atoms, 0);

@@ -46,12 +46,13 @@ void Molecules::leave_own(std::vector<Bond> &bonds, int n_atoms) const {
     const auto number_of = [](int atom) { return ddglatnr(domain, atom) - 1; };
     const int missing = holonomic::leave_own(bonds, n_atoms, n_home, topology, number_of);
     if (missing < 0) return;
-    gmx_fatal(0, __FILE__, __LINE__,
-              "Constraints by holonomic: the molecule of atom %d lies on several ranks, and this one has not been given all "
-              "of its constraints: they reach further than lincs-order + 1 bonds from its atoms. Use one rank and threads: "
-              "mdrun -ntmpi 1 -ntomp N, or one process of an MPI build; or, for a molecule that is small, a lincs-order of "
-              "as many bonds as it is long.",
-              number_of(missing) + 1);
+    gmx_fatal(
+        0, __FILE__, __LINE__,
+        "Constraints by holonomic: the molecule of atom %d lies on several ranks, and this one has not been given all "
+        "of its constraints: they reach further than lincs-order + 1 bonds from its atoms. Use one rank and threads: "
+        "mdrun -ntmpi 1 -ntomp N, or one process of an MPI build; or, for a molecule that is small, a lincs-order of "
+        "as many bonds as it is long.",
+        number_of(missing) + 1);
 }
 
 void Molecules::find_shares() {

@@ -40,7 +40,8 @@ public:
     int n_threads() const { return threads; }
     int number(int place) const;  // of the atom there, as the topology counts
     double length(size_t bond) const { return lengths[bond]; }
-    // The part of a bond that is the rank's, by its atoms, where domains cut molecules; of sums over ranks each takes that.
+    // The part of a bond that is the rank's, by its atoms, where domains cut molecules; of sums over ranks each takes
+    // that.
     bool cut() const { return !shares.empty(); }
     double share(size_t bond) const { return cut() ? shares[bond] : 1; }
     double shortest() const { return shortest_length; }

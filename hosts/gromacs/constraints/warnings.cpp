@@ -89,8 +89,8 @@ void warn(const Molecules &molecules, const Call &call, const std::string &words
             ", time %g (ps)  CONSTRAINT WARNING\n"
             "relative constraint deviation: rms %.6f, max %.6f (between atoms %d and %d)\n",
             call.step, double(call.parameters.init_t + call.step * call.parameters.delta_t),
-            std::sqrt(left.sum_of_squares / left.n_bonds), left.largest,
-            molecules.number(worst.first), molecules.number(worst.second));
+            std::sqrt(left.sum_of_squares / left.n_bonds), left.largest, molecules.number(worst.first),
+            molecules.number(worst.second));
     if (n_unsolved > 0)
         fprintf(stderr, "%" PRId64 " molecule%s could not be solved: %s\n", n_unsolved, n_unsolved == 1 ? "" : "s",
                 words.c_str());
