@@ -17,15 +17,16 @@ void Rank::derivatives(const Call &call, real *projected, gmx::ConstraintVariabl
     q.resize(x.size());
     copy_whole(places, call.pbc, call.x, x.data(), n_threads);
     copy(places, call.q, q.data(), n_threads);
-    double *const lambda = multipliers_if(flexible_alone || (call.dvdlambda && molecules.perturbed()));
-    const auto project = [&] { return hol_project_velocities(chains, x.data(), q.data(), lambda, call.virial); };
+    const bool by_shares = call.virial && molecules.cut();
+    double *const lambda = multipliers_if(flexible_alone || by_shares || (call.dvdlambda && molecules.perturbed()));
+    double *const virial = by_shares ? nullptr : call.virial;
+    const auto project = [&] { return hol_project_velocities(chains, x.data(), q.data(), lambda, virial); };
     int status = project();
     if (status == HOL_OK && flexible_alone) {
         for (size_t k = 0; k < molecules.n_bonds(); k++)
             if (!molecules.flexible(k)) lambda[k] = 0;
         change.assign(x.size(), 0);
-        status =
-            hol_reactions(chains, x.data(), HOL_BOX, lambda, nullptr, change.data(), HOL_WRITE, nullptr, call.virial);
+        status = hol_reactions(chains, x.data(), HOL_BOX, lambda, nullptr, change.data(), HOL_WRITE, nullptr, virial);
         copy(places, call.q, q.data(), n_threads);
         for (size_t i = 0; i < q.size(); i++) q[i] += molecules.inverse_mass(i / 3) * change[i];
     }
@@ -33,6 +34,7 @@ void Rank::derivatives(const Call &call, real *projected, gmx::ConstraintVariabl
         molecules.message(project);
         molecules.end_run();
     }
+    if (by_shares) add_own_virial(call.virial);
     hand_back(places, q.data(), call.q, projected, n_threads);
     if (call.dvdlambda && molecules.perturbed()) *call.dvdlambda += derivative_by_lambda();
 }

@@ -33,11 +33,32 @@ void Molecules::set(const InteractionDefinitions &definitions, int n_atoms, gmx:
     for (int i = 0; i < std::min<int>(n_atoms, static_cast<int>(inverse_masses.size())); i++)
         new_masses[i] = mass_of(inverse_masses[i]);
     std::vector<Bond> new_list = constraints_of(definitions, dynamics);
-    if (handle && new_list == list && new_masses == all_masses) return set_lambda(lambda);
+    if (!topology.empty()) leave_own(new_list, n_atoms);
+    if (handle && topology.empty() && new_list == list && new_masses == all_masses) return set_lambda(lambda);
     list.swap(new_list);
     all_masses.swap(new_masses);
     lambda_of_lengths = lambda_of_masses = lambda;
     make();
+    if (!topology.empty()) find_shares();
+}
+
+void Molecules::leave_own(std::vector<Bond> &bonds, int n_atoms) const {
+    const auto number_of = [](int atom) { return ddglatnr(domain, atom) - 1; };
+    const int missing = holonomic::leave_own(bonds, n_atoms, n_home, topology, number_of);
+    if (missing < 0) return;
+    gmx_fatal(
+        0, __FILE__, __LINE__,
+        "Constraints by holonomic: the molecule of atom %d lies on several ranks, and this one has not been given all "
+        "of its constraints: they reach further than lincs-order + 1 bonds from its atoms. Use one rank and threads: "
+        "mdrun -ntmpi 1 -ntomp N, or one process of an MPI build; or, for a molecule that is small, a lincs-order of "
+        "as many bonds as it is long.",
+        number_of(missing) + 1);
+}
+
+void Molecules::find_shares() {
+    shares.clear();
+    for (const Bond &bond : arrangement.bonds)
+        shares.push_back(0.5 * ((arrangement.atoms[bond.first] < n_home) + (arrangement.atoms[bond.second] < n_home)));
 }
 
 void Molecules::make() {
@@ -74,7 +95,7 @@ void Molecules::make() {
     threads = std::max(1, gmx_omp_nthreads_get(ModuleMultiThread::Lincs));
     check(hol_chains_set_threads(made, threads));
     // A hundredth of what single precision can hold: displacements are rounded to that.
-    if (!GMX_DOUBLE) check(hol_chains_set_tolerance(made, 1e-9));
+    if (!GMX_DOUBLE) check(hol_chains_set_tolerance(made, 1e-8));
     // Once they have run, a molecule that went astray must not keep the others from being solved.
     if (!is_first) check(hol_chains_set_checks(made, HOL_NEVER));
 }

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "arrangement.hpp"
+#include "cut.hpp"
 #include "gromacs.hpp"
 #include "holonomic.h"
 
@@ -15,6 +16,7 @@ struct Destroy {
 
 class Molecules {
 public:
+    void set_topology(Topology &&whole) { topology = std::move(whole); }  // where domains may cut molecules
     // Takes the list as it is now. What has not changed is not made anew.
     void set(const InteractionDefinitions &, int n_atoms, gmx::ArrayRef<const real> inverse_masses, double lambda,
              bool dynamics);
@@ -38,6 +40,10 @@ public:
     int n_threads() const { return threads; }
     int number(int place) const;  // of the atom there, as the topology counts
     double length(size_t bond) const { return lengths[bond]; }
+    // The part of a bond that is the rank's, by its atoms, where domains cut molecules; of sums over ranks each takes
+    // that.
+    bool cut() const { return !shares.empty(); }
+    double share(size_t bond) const { return cut() ? shares[bond] : 1; }
     double shortest() const { return shortest_length; }
     double change_with_lambda(size_t bond) const { return arrangement.bonds[bond].b - arrangement.bonds[bond].a; }
     bool flexible(size_t bond) const { return arrangement.bonds[bond].a == 0 && arrangement.bonds[bond].b == 0; }
@@ -48,6 +54,8 @@ public:
 private:
     void make();
     bool add(hol_chains *) const;
+    void leave_own(std::vector<Bond> &, int n_atoms) const;
+    void find_shares();
     bool set_lengths();  // of lambda; whether one has changed
     void find_shortest();
     void set_labels() const;
@@ -57,10 +65,11 @@ private:
     }
 
     std::unique_ptr<hol_chains, Destroy> handle;
+    Topology topology;
     std::vector<Bond> list;          // as GROMACS has it
     std::vector<double> all_masses;  // of the rank's atoms; 0: held fixed
     Arrangement arrangement;
-    std::vector<double> lengths, masses;  // at the arrangement's places
+    std::vector<double> lengths, masses, shares;  // at the arrangement's places
     double lambda_of_lengths = 0, lambda_of_masses = 0, shortest_length = 0;
     bool any_perturbed = false, any_flexible = false;
     int threads = 1;
@@ -68,5 +77,6 @@ private:
 
 // The domain of this thread's rank, for the numbers of atoms in the topology; null without domains.
 inline thread_local const gmx_domdec_t *domain = nullptr;
+inline thread_local int n_home = 0;  // its own atoms, which come first
 
 }  // namespace holonomic

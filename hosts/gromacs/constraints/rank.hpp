@@ -35,6 +35,7 @@ struct Rank {
 private:
     double *multipliers_if(bool wanted);
     double derivative_by_lambda() const;
+    void add_own_virial(double *) const;
     int move_crude_start();
     void measure(const Call &);
 
@@ -43,11 +44,14 @@ private:
 
 // What is left of the constraints at q, in the precision of GROMACS.
 struct Deviation {
-    double sum_of_squares = 0, largest = 0;
+    double n_bonds = 0, sum_of_squares = 0, largest = 0;
     size_t bond = 0;  // of the largest
 };
 Deviation deviation(const Molecules &, const t_pbc *, const real *q);
 
+// No bond turns by that angle in a step in which each atom moves by less: by half of this in each direction, and then
+// by an eighth.
+double no_turn(const Molecules &, const Call &);
 // Whether a bond has turned by more than lincs-warnangle between x and q.
 bool any_turned(const Molecules &, const Call &, const double *x, const double *q);
 // Tells and counts what GROMACS does: molecules that could not be solved, in `words`, and turned bonds.

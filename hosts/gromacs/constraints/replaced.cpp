@@ -46,14 +46,8 @@ Lincs *init_lincs(FILE *log, const gmx_mtop_t &topology, int n_flexible, ArrayRe
     if (log) {
         for (FILE *file : {log, stderr}) holonomic::tell_what_was_found(file);
     }
-    if (split && builder)
-        gmx_fatal(
-            0, __FILE__, __LINE__,
-            "Constraints by holonomic: with domain decomposition each molecule must be whole on one rank, and here "
-            "constraints may cross from one rank to another (there are no update groups). Use one rank and threads: "
-            "mdrun -ntmpi 1 -ntomp N, or one process of an MPI build. With constraints = h-bonds molecules are whole "
-            "on any number of ranks.");
     Rank &rank = rank_of(lincs);
+    if (split) rank.molecules.set_topology(holonomic::Topology(topology, constraints));
     if (builder) join_sums(rank, *builder);
     return lincs;
 }
@@ -127,5 +121,5 @@ bool constrain_lincs(bool wants_rmsd, const t_inputrec &parameters, int64_t step
 int dd_numHomeAtoms(const gmx_domdec_t &domain) {
     static const auto original = holonomic::original(&dd_numHomeAtoms);
     holonomic::domain = &domain;
-    return original(domain);
+    return holonomic::n_home = original(domain);
 }

@@ -22,26 +22,6 @@ Vector along(const Bond &bond, const double *q) {
     return {j[0] - i[0], j[1] - i[1], j[2] - i[2]};
 }
 
-// Whether no atom has moved by that, as far as sums over a few atoms say. Written for two numbers at once.
-bool all_nearer(double distance, const double *x, const double *q, size_t n) {
-    typedef double Two __attribute__((vector_size(16)));
-    constexpr size_t block = 24;
-    for (size_t first = 0; first < n; first += block) {
-        const size_t end = std::min(n, first + block);
-        Two sum = {};
-        size_t i = first;
-        for (; i + 1 < end; i += 2) {
-            Two before, after;
-            std::memcpy(&before, x + i, sizeof before);
-            std::memcpy(&after, q + i, sizeof after);
-            sum += (after - before) * (after - before);
-        }
-        const double last = i < end ? q[i] - x[i] : 0;
-        if (!(sum[0] + sum[1] + last * last < distance * distance)) return false;
-    }
-    return true;
-}
-
 double warning_cosine(const Call &call) { return std::cos(call.parameters.LincsWarnAngle * M_PI / 180); }
 
 void tell_turned(const Molecules &molecules, const Call &call, const double *x, const double *q) {
@@ -73,7 +53,8 @@ Deviation deviation(const Molecules &molecules, const t_pbc *pbc, const real *q)
     for (size_t k = 0; k < molecules.n_bonds(); k++) {
         const Vector d = along(molecules.places().bonds[k], whole.data());
         const double off = std::fabs(std::sqrt(dot(d, d)) / molecules.length(k) - 1);
-        result.sum_of_squares += off * off;
+        result.n_bonds += molecules.share(k);
+        result.sum_of_squares += molecules.share(k) * off * off;
         if (off > result.largest) {
             result.largest = off;
             result.bond = k;
@@ -82,11 +63,14 @@ Deviation deviation(const Molecules &molecules, const t_pbc *pbc, const real *q)
     return result;
 }
 
-// Turning by the warning's angle takes a chord; where no atom has moved by half of the shortest one, none has turned.
+// Turning by that angle takes a chord, of which each end has moved by half.
+double no_turn(const Molecules &molecules, const Call &call) {
+    const double cosine = warning_cosine(call);
+    return 0.99 * std::sqrt(std::max(0.0, 2 - 2 * cosine)) / 2 * molecules.shortest();
+}
+
 bool any_turned(const Molecules &molecules, const Call &call, const double *x, const double *q) {
     const double cosine = warning_cosine(call);
-    const double least = 0.99 * std::sqrt(std::max(0.0, 2 - 2 * cosine)) / 2 * molecules.shortest();
-    if (all_nearer(least, x, q, 3 * molecules.n_atoms())) return false;
     const std::vector<Bond> &bonds = molecules.places().bonds;
     bool any = false;
     for (size_t k = 0; k < bonds.size(); k++) {
@@ -105,8 +89,8 @@ void warn(const Molecules &molecules, const Call &call, const std::string &words
             ", time %g (ps)  CONSTRAINT WARNING\n"
             "relative constraint deviation: rms %.6f, max %.6f (between atoms %d and %d)\n",
             call.step, double(call.parameters.init_t + call.step * call.parameters.delta_t),
-            std::sqrt(left.sum_of_squares / static_cast<double>(molecules.n_bonds())), left.largest,
-            molecules.number(worst.first), molecules.number(worst.second));
+            std::sqrt(left.sum_of_squares / left.n_bonds), left.largest, molecules.number(worst.first),
+            molecules.number(worst.second));
     if (n_unsolved > 0)
         fprintf(stderr, "%" PRId64 " molecule%s could not be solved: %s\n", n_unsolved, n_unsolved == 1 ? "" : "s",
                 words.c_str());

@@ -3,12 +3,17 @@ import math
 import pathlib
 import re
 import shutil
+import statistics
 import subprocess
+import sys
 import tempfile
 import unittest
 
 import gromacs as g
 import scenes as s
+
+sys.path.append(str(g.HERE.parent / "examples"))
+import membrane  # noqa: E402
 
 FREE = ["Kinetic-En.", "Pressure", "Vir-XX", "Vir-XY", "Pres-ZZ"]
 ALL = FREE + ["Potential"]
@@ -42,6 +47,14 @@ class Case(unittest.TestCase):
             scale = max(abs(v) for v in lincs[term]) or 1
             for a, b in zip(lincs[term], exact[term]):
                 self.assertLessEqual(abs(a - b), tolerance * scale, f"{term}: {a} {b}")
+
+    def restart(self, n_steps, gmx):
+        """Energies of a run in one, and of the second part of the same in two."""
+        half = str(n_steps // 2)
+        g.mdrun(self.folder, "-reprod", gmx=gmx, name="whole")
+        g.mdrun(self.folder, "-reprod", "-nsteps", half, gmx=gmx, name="part")
+        g.mdrun(self.folder, "-reprod", "-cpi", "part.cpt", "-nsteps", half, "-noappend", gmx=gmx, name="part")
+        return [g.energies(self.folder, ALL, gmx, name) for name in ("whole", "part.part0002")]
 
     def worst_length(self, molecules, bonds_of, name="exact"):
         """Of all frames: the largest relative error of a length, and of d.v against |d| |v|."""
@@ -287,16 +300,16 @@ class Special(Case):
         self.scene([(molecule, 8)], 1.3, constraints="all-bonds")
         self.assert_same(self.both(ALL))
 
-    def test_continuation_from_a_checkpoint(self):
-        self.scene(BUTANES, 0.9, constraints="all-bonds", nsteps=40)
-        g.mdrun(self.folder, name="whole")
-        g.mdrun(self.folder, "-nsteps", "20", name="part")
-        g.mdrun(self.folder, "-cpi", "part.cpt", "-nsteps", "20", "-noappend", name="part")
-        whole = g.energies(self.folder, ALL, g.DOUBLE, "whole")
-        part = g.energies(self.folder, ALL, g.DOUBLE, "part.part0002")
-        for term in ALL:
-            term = term.replace("Kinetic-En.", "Kinetic En.")
-            self.assertAlmostEqual(whole[term][-1] / part[term][-1], 1, delta=1e-9)
+    def test_a_restart_loses_nothing(self):
+        for gmx in (g.DOUBLE, g.MIXED):
+            with self.subTest(gmx=gmx):
+                self.scene([(s.cholesterol(), 32), (s.alkane(4), 32)], 1.0, gmx=gmx, constraints="all-bonds", nsteps=400,
+                           nstenergy=100, tcoupl="v-rescale", tc_grps="System", tau_t=1, ref_t=300)
+                whole, part = self.restart(400, gmx)
+                for term in set(whole) - {"time"}:
+                    self.assertEqual(whole[term][-1], part[term][-1], term)
+                self.assertEqual((self.folder / "whole.gro").read_text().splitlines()[1:],
+                                 (self.folder / "part.part0002.gro").read_text().splitlines()[1:])
 
     def test_essential_dynamics_move_what_is_constrained(self):
         self.scene([(s.alkane(4), 8)], 1.2, constraints="all-bonds", nstxout=1)
@@ -357,8 +370,43 @@ class Ranks(Case):
                 g.mdrun(self.folder, "-ntmpi", ranks, "-dlb", "no", name="exact")
                 self.assert_same(tuple(g.energies(self.folder, ALL, g.DOUBLE, name) for name in ("lincs", "exact")))
 
-    def test_molecules_across_ranks_are_refused(self):
-        self.scene([(s.alkane(4), 125)], 1.0, constraints="all-bonds", nsteps=2)
+    def test_molecules_that_domains_cut(self):
+        """Each rank solves those of which it has an atom, and counts its part of the sums."""
+        for integrator, ranks in (("md", "2"), ("md-vv", "2"), ("md", "4")):
+            with self.subTest(integrator=integrator, ranks=ranks):
+                self.scene([(s.alkane(4), 125)], 1.0, integrator=integrator, constraints="all-bonds", nsteps=8, nstlist=4)
+                g.mdrun(self.folder, name="one")
+                g.mdrun(self.folder, "-ntmpi", ranks, name="exact")
+                self.assert_same(tuple(g.energies(self.folder, ALL, g.DOUBLE, name) for name in ("one", "exact")))
+
+    def test_free_energy_of_molecules_that_domains_cut(self):
+        a = s.alkane(3)
+        molecule = s.Molecule("PER", [(kind, name, m, 1.3 * m) for kind, name, m in a.atoms], a.places, angles=a.angles,
+                              constraints=[(i, j, length, 1.05 * length) for i, j, length, _ in a.bonds])
+        self.scene([(molecule, 125)], 1.0, free_energy="yes", nstdhdl=1, init_lambda=0.5, nstlist=5, nsteps=6)
+        g.mdrun(self.folder, name="one")
+        g.mdrun(self.folder, "-ntmpi", "2", name="exact")
+        self.assert_same(tuple(g.energies(self.folder, ALL + ["dVremain/dl"], g.DOUBLE, name) for name in ("one", "exact")))
+
+    def test_a_membrane_on_one_two_and_four_ranks(self):
+        """Its cholesterol, with virtual sites and a tail, is no update group."""
+        membrane.write(self.folder)
+        quiet = dict(coulombtype="reaction-field", epsilon_rf=0, epsilon_r=15, lincs_order=4)
+        s.write_mdp(self.folder, **quiet, integrator="steep", nsteps=30, emtol=100, gen_vel="no")
+        g.grompp(self.folder)
+        g.mdrun(self.folder, name="relaxed")
+        s.write_mdp(self.folder, **quiet, nsteps=8, dt=0.01, nstlist=4)
+        g.grompp(self.folder, g.DOUBLE, "-c", "relaxed.gro")
+        g.mdrun(self.folder, name="one")
+        for ranks in ("2", "4"):
+            with self.subTest(ranks=ranks):
+                g.mdrun(self.folder, "-ntmpi", ranks, name="exact")
+                # velocities of the start differ by a relative 1e-7 between ranks, with LINCS by as much
+                self.assert_same(tuple(g.energies(self.folder, ALL, g.DOUBLE, name) for name in ("one", "exact")), 2e-6,
+                                 skip=("Pressure", "Pres-ZZ", "Vir-XY"))  # small differences of large numbers
+
+    def test_molecules_that_reach_too_far_are_refused(self):
+        self.scene([(s.chain(30), 27)], 3.0, nsteps=2, lincs_order=4)
         for ranks in ("2", "4"):
             with self.subTest(ranks=ranks), self.assertRaisesRegex(g.Failed, r"mdrun\s+-ntmpi\s+1\s+-ntomp\s+N"):
                 g.mdrun(self.folder, "-ntmpi", ranks, name="exact")
@@ -452,19 +500,27 @@ class Words(Case):
 
 @unittest.skipUnless(g.os.environ.get("HOLONOMIC_GROMACS_LONG"), "HOLONOMIC_GROMACS_LONG is not set")
 class Long(Case):
-    def test_a_restart_loses_nothing(self):
-        """1e5 steps of cholesterol among alkanes, and the same in two parts."""
-        molecules = [(s.cholesterol(), 64), (s.alkane(4), 61)]
-        self.scene(molecules, 1.0, gmx=g.MIXED, constraints="h-bonds", dt=0.002, nsteps=100000, nstenergy=1000, tcoupl="v-rescale",
-                   tc_grps="System", tau_t=1, ref_t=300)
-        g.mdrun(self.folder, "-reprod", gmx=g.MIXED, name="whole")
-        g.mdrun(self.folder, "-reprod", "-nsteps", "50000", gmx=g.MIXED, name="part")
-        g.mdrun(self.folder, "-reprod", "-cpi", "part.cpt", "-nsteps", "50000", "-noappend", gmx=g.MIXED, name="part")
-        whole, part = (g.energies(self.folder, ALL, g.MIXED, name) for name in ("whole", "part.part0002"))
+    def test_a_restart_of_a_membrane_loses_nothing(self):
+        """1e5 steps of DPPC and cholesterol."""
+        membrane.write(self.folder)
+        quiet = dict(coulombtype="reaction-field", epsilon_r=15, epsilon_rf=0, rcoulomb=1.1, rvdw=1.1, rlist=1.3,
+                     vdw_modifier="potential-shift", nstlist=20, nstenergy=1000, nstcalcenergy=100)
+        s.write_mdp(self.folder, **{**quiet, "integrator": "steep", "nsteps": 200, "emtol": 100, "gen_vel": "no"})
+        g.grompp(self.folder, g.MIXED)
+        g.mdrun(self.folder, gmx=g.MIXED, name="relaxed")
+        s.write_mdp(self.folder, **{**quiet, "dt": 0.02, "nsteps": 100000, "tcoupl": "v-rescale", "tc_grps": "System", "tau_t": 1,
+                                    "ref_t": 323, "gen_temp": 323, "pcoupl": "c-rescale", "pcoupltype": "semiisotropic",
+                                    "tau_p": 4, "ref_p": "1 1", "compressibility": "3e-4 3e-4"})
+        g.grompp(self.folder, g.MIXED, "-c", "relaxed.gro")
+        whole, part = self.restart(100000, g.MIXED)
+        # GROMACS goes on with forces summed in another order, also with LINCS: equal at the restart, alike after it.
+        at = whole["time"].index(part["time"][0])
         for term in set(whole) - {"time"}:
-            self.assertEqual(whole[term][-1], part[term][-1], term)
-        self.assertEqual((self.folder / "whole.gro").read_text().splitlines()[1:],
-                         (self.folder / "part.part0002.gro").read_text().splitlines()[1:])
+            self.assertAlmostEqual(whole[term][at], part[term][0], delta=1e-5 * max(abs(e) for e in whole[term]), msg=term)
+        for term in ("Potential", "Kinetic En."):
+            means = [statistics.fmean(values) for values in (whole[term][at:], part[term])]
+            self.assertAlmostEqual(means[0] / means[1], 1, delta=5e-3, msg=term)
+            print(term, *means)
 
 
 if __name__ == "__main__":
