@@ -102,10 +102,9 @@ struct KeptTreesSolve {
             for (int32_t a = of_ring ? -2 : -1; a < k; ++a) {
                 const int32_t place = a == -2 ? before(slot) : a == -1 ? slot : first + a;
                 const KeptBond<V> &bond = kept.bond[place];
-                BondRow<V> row = {bond.d, bond.q, value[place].own, value[place].t, bond.l, bond.r};
-                const MaskOf<V> cancelling = less(left_of(row, shared), V{});
-                x.row = &row - place;
-                if (any(cancelling)) flag_cancelling_bond(x, place, shared, bits(cancelling), x.margin);
+                const BondRow<V> row = {bond.d, bond.q, value[place].own, value[place].t, bond.l, bond.r};
+                const unsigned cancelling = bits(x.in_use() & less(left_of(row, shared), V{}));
+                if (cancelling) flag_cancelling_bond(x, row, place, shared, cancelling, x.margin);
             }
         }
         return bits(~less(x.margin, V{}));

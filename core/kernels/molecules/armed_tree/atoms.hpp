@@ -94,7 +94,7 @@ HOL_NOINLINE void note_cancelling(ArmedTree &z, int32_t slot, int k) {
         const int32_t place = x.s.child[x.s.child_start[slot] + a];
         const BondRow<double> &row = x.row[place];
         const double down = row.l * above, A = (x.w[slot] + x.w[place]) * row.q;
-        const double size = abs(row.t) + terms_of(x, place, 0) / A;
+        const double size = abs(row.t) + terms_of(x, row, place, 0) / A;
         if (!(abs(row.t - down) + abs(down) <= sqrt(most_cancelled2(x.s.n_bonds)) * size)) margin = -1;
     }
 }

@@ -226,8 +226,10 @@ HOL_INLINE void look_at_ring_atom(Molecules<V> &x, int32_t before, int32_t slot,
     for (int a = 0; a < k; ++a) least = min(left_of(x.row[child[a]], shared), least);
     const MaskOf<V> cancelling = less(least, V{});
     if (__builtin_expect(!any(cancelling), 1)) return;
-    for (int a = -2; a < k; ++a)
-        flag_cancelling_bond(x, a == -2 ? before : a < 0 ? slot : child[a], shared, bits(cancelling), x.margin);
+    for (int a = -2; a < k; ++a) {
+        const int32_t place = a == -2 ? before : a < 0 ? slot : child[a];
+        flag_cancelling_bond(x, x.row[place], place, shared, bits(cancelling), x.margin);
+    }
 }
 
 // From u to t of the ring and of its atoms' children. `look`: tests the result, as down_joint() does.

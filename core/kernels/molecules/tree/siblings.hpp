@@ -90,10 +90,9 @@ HOL_NOINLINE double terms_of(const Inputs &in, const double *d, const int64_t *n
 
 // Those of a bond at a place, in one lane.
 template <class V>
-double terms_of(const Molecules<V> &x, int32_t place, int lane) {
+double terms_of(const Molecules<V> &x, const BondRow<V> &row, int32_t place, int lane) {
     if (x.in.rhs) return __builtin_fabs(0.5 * x.in.rhs[x.lane[lane].first_bond + x.s.bond_of[place]]);
-    const Vector3<V> &row = x.row[place].d;
-    const double d[3] = {Width<V>::get(row.x, lane), Width<V>::get(row.y, lane), Width<V>::get(row.z, lane)};
+    const double d[3] = {Width<V>::get(row.d.x, lane), Width<V>::get(row.d.y, lane), Width<V>::get(row.d.z, lane)};
     int32_t end[2];
     ends_of(x.s, place, end[0], end[1]);
     const int64_t number[2] = {x.at.number(lane, x.s.atom_of[end[0]]), x.at.number(lane, x.s.atom_of[end[1]])};
@@ -103,15 +102,15 @@ double terms_of(const Molecules<V> &x, int32_t place, int lane) {
 
 // Looks again at a bond in the lanes of `which`. Slack becomes negative where it is cancelling all the same.
 template <class V>
-HOL_NOINLINE void flag_cancelling_bond(const Molecules<V> &x, int32_t place, const V &shared, unsigned which,
-                                       V &margin) {
-    const V left = left_of(x.row[place], shared);
+HOL_NOINLINE void flag_cancelling_bond(const Molecules<V> &x, const BondRow<V> &row, int32_t place, const V &shared,
+                                       unsigned which, V &margin) {
+    const V left = left_of(row, shared);
     int32_t from, to;
     ends_of(x.s, place, from, to);
-    const V A = (x.w[from] + x.w[to]) * x.row[place].q;
+    const V A = (x.w[from] + x.w[to]) * row.q;
     for (unsigned rest = which & bits(less(left, V{})); rest; rest &= rest - 1) {
         const int i = __builtin_ctz(rest);
-        const double own = terms_of(x, place, i) / Width<V>::get(A, i);
+        const double own = terms_of(x, row, place, i) / Width<V>::get(A, i);
         if (!(Width<V>::get(left, i) + own * own >= 0)) Width<V>::set(margin, i, -1);
     }
 }
@@ -120,7 +119,10 @@ template <class V>
 HOL_NOINLINE void flag_cancelling_bonds(const Molecules<V> &x, int32_t slot, int k, unsigned which, V &margin) {
     const int32_t *const child = x.s.child + x.s.child_start[slot];
     const V shared = shared_error<V>(AtomRows<V>(x, slot), k);
-    for (int a = -1; a < k; ++a) flag_cancelling_bond(x, a < 0 ? slot : child[a], shared, which, margin);
+    for (int a = -1; a < k; ++a) {
+        const int32_t place = a < 0 ? slot : child[a];
+        flag_cancelling_bond(x, x.row[place], place, shared, which, margin);
+    }
 }
 
 }  // namespace holonomic::HOL_ISA::graph
