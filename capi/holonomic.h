@@ -323,6 +323,29 @@ HOL_API int hol_chains_add_rigid_molecules(hol_chains *chains, int64_t n_molecul
                                            const double *lengths);
 
 /**
+ * Two to four equal mass points that have the mass, the centre and the moments of inertia of a rigid body (an
+ * equimomental system): how a body that is given by its inertia tensor comes to hol_chains_add_rigid. The points are
+ * atoms of these masses, and what the body carries are massless sites of it, atoms of mass 0, with places in the same
+ * frame. docs/rigid.md.
+ * @param[in]  mass      of the body, > 0
+ * @param[in]  centre    [3], its centre of mass, in the frame of the places; NULL: the origin
+ * @param[in]  inertia   [3][3], sum m (x.x 1 - x x^T) about the centre: symmetric to 1e-10, moments on the diagonal,
+ *                       products with the minus sign beside it. One principal moment may be 0 (a linear body), and one
+ *                       the sum of the others (a flat one)
+ * @param[out] n_points  2 for a linear body, 3 for a flat one, otherwise 4
+ * @param[out] masses    [4], of which n_points are written: mass / n_points each
+ * @param[out] places    [4][3], likewise (Fortran: (3, 4))
+ *
+ * Moments are those of the tensor to rounding. Where the largest is above the sum of the others by no more than 1e-6,
+ * as digits of a file may leave it, the body is flat, or linear.
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE: the mass; numbers that are not finite; a tensor that is not symmetric, is
+ *         0, has a negative moment, or one above the sum of the others, which no distribution of mass has. On an error
+ *         nothing is written. Thread-safe. Since 0.3.
+ */
+HOL_API int hol_equimomental_points(double mass, const double *centre, const double *inertia, int64_t *n_points,
+                                    double *masses, double *places);
+
+/**
  * Adds linear relations among atoms, sum_i c_i r_i = 0 with constant c_i, and bonds of the molecules in which these
  * are: a site by its base and coefficients (r_s = a r_1 + b r_2 + ..), atoms that are one point (1, -1), centroids and
  * centres of mass of flexible groups that coincide. A relation is three equations, which have no coordinates in them:

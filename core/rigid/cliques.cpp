@@ -253,7 +253,7 @@ private:
         for (std::int64_t i = 1; i < wanted.n; ++i) wanted.at(i, 0) = length_between(atom, near[at(i)]);
         if (!locate(wanted, dimension, there)) return false;
         const Misfit misfit = misfit_of(wanted, there);
-        const Decimals decimals(wanted, tolerance_);
+        const Decimals decimals(distances(near), tolerance_);
         if (dimension < 3 ? !decimals.allow_joining(misfit) : misfit.error > 4 * decimals.most()) return false;
         atoms.push_back(atom);
         places.insert(places.end(), there.begin(), there.begin() + 3);

@@ -19,6 +19,7 @@ from .errors import (ArgumentError, DegenerateError, Error, LengthsError, Length
 from .factors import Factors
 from .inverse import Inverse
 from .molecules import Molecules
+from .equimomental import equimomental_points
 from .partition import PartitionFunction, partition_function
 from .results import Forces, Impulse, Metric, Outcomes, Reactions, Report, Violation
 
@@ -28,5 +29,5 @@ __all__ = [
     "LengthsWarning", "MasslessWarning", "Metric", "Molecule", "Molecules", "NoConvergenceError", "NotDefiniteError",
     "NotFiniteError", "NumberError", "OutOfMemoryError", "Outcomes", "PartitionFunction", "Reactions",
     "ReferenceWarning", "Report", "SharedAtomError",
-    "StateError", "UnsupportedError", "Violation", "instruction_set", "partition_function", "tridiagonal", "version",
+    "StateError", "UnsupportedError", "Violation", "equimomental_points", "instruction_set", "partition_function", "tridiagonal", "version",
 ]

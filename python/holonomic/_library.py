@@ -114,6 +114,7 @@ SIGNATURES = {
     "hol_tridiagonal_inverse_entry": "i lpllp",
     "hol_tridiagonal_inverse_band": "i lplp",
     "hol_partition_function": "i lpppp",
+    "hol_equimomental_points": "i dppppp",
 }
 _TYPES = {"p": c_void_p, "i": c_int, "l": c_int64, "d": c_double, "s": ctypes.c_char_p, "-": None}
 
