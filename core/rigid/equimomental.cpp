@@ -14,7 +14,7 @@ namespace holonomic::rigid {
 namespace {
 
 // What the digits of a file may leave of a plane's or a line's missing thickness, of sum m x^2; and what rounding does.
-constexpr long double of_file = 1e-6L, of_rounding = 1e-14L;
+constexpr long double of_file = 1e-5L, of_rounding = 1e-14L;
 
 const char axis[] = "xyz";
 
@@ -41,6 +41,23 @@ void check(double mass, const double *centre, const double *inertia) {
     }
 }
 
+long double largest_of(const long double (&J)[3][3]) {
+    long double largest = 0;
+    for (const auto &row : J)
+        for (const long double element : row) largest = std::max(largest, std::fabs(element));
+    return largest;
+}
+
+// Of two eigenvalues that are left, whether they are of unlike signs and alike in size.
+bool is_indefinite(const long double (&J)[3][3]) {
+    for (int i = 0; i < 3; ++i) {
+        const int j = (i + 1) % 3;
+        const long double product = J[i][j] * J[i][j] - J[i][i] * J[j][j];
+        if (product > 0.05L * (J[i][i] * J[i][i] + J[j][j] * J[j][j] + J[i][j] * J[i][j])) return true;
+    }
+    return false;
+}
+
 struct Factor {
     long double column[3][3];
     int rank;
@@ -55,20 +72,19 @@ Factor factor_of(long double (&J)[3][3]) {
         int p = 0;
         for (int i = 1; i < 3; ++i)
             if (J[i][i] > J[p][p]) p = i;
-        if (!(J[p][p] > of_rounding * trace)) break;
+        if (!(J[p][p] > of_rounding * trace) || (largest_of(J) <= of_file * trace && is_indefinite(J))) break;
         long double *const c = factor.column[k];
         for (int i = 0; i < 3; ++i) c[i] = J[i][p] / std::sqrt(J[p][p]);
         for (int i = 0; i < 3; ++i)
             for (int j = 0; j < 3; ++j) J[i][j] = i == p || j == p ? 0 : J[i][j] - c[i] * c[j];
         factor.rank = k + 1;
     }
-    for (const auto &row : J)
-        for (const long double left : row)
-            if (!(std::fabs(left) <= of_file * trace)) factor.rank = -1;
+    if (!(largest_of(J) <= of_file * trace)) factor.rank = -1;
     return factor;
 }
 
-// The eigenvalues of a symmetric matrix, ascending, as roots of its characteristic polynomial.
+// The eigenvalues of a symmetric matrix, ascending, as roots of its characteristic polynomial: to half the digits, for
+// messages.
 void moments_of(const double *a, double (&moment)[3]) {
     const double mean = (a[0] + a[4] + a[8]) / 3;
     double b[9], square = 0;
@@ -82,6 +98,8 @@ void moments_of(const double *a, double (&moment)[3]) {
     const double angle = p > 0 ? std::acos(std::max(-1.0, std::min(1.0, det / (2 * p * p * p)))) / 3 : 0;
     for (int k = 0; k < 3; ++k) moment[k] = mean + 2 * p * std::cos(angle + third * (k + 1));
     std::sort(moment, moment + 3);
+    for (double &x : moment)
+        if (std::fabs(x) < 1e-7 * moment[2]) x = 0;
 }
 
 // Of the regular simplex of rank + 1 corners.
@@ -106,11 +124,11 @@ MassPoints equimomental_points(double mass, const double *centre, const double *
     if (factor.rank < 0) {
         double moment[3];
         moments_of(inertia, moment);
-        if (!(moment[0] > -1e-6 * moment[2]))
-            throw make_error(Status::value, "the inertia has the principal moment %.10g: none can be negative",
+        if (!(moment[0] >= 0))
+            throw make_error(Status::value, "the inertia has the principal moment %.6g: none can be negative",
                              moment[0]);
         throw make_error(Status::value,
-                         "the inertia has the principal moments %.10g, %.10g and %.10g: of no distribution of mass the "
+                         "the inertia has the principal moments %.6g, %.6g and %.6g: of no distribution of mass the "
                          "largest is above the sum of the others",
                          moment[0], moment[1], moment[2]);
     }

@@ -16,10 +16,10 @@ from ._queries import Molecule
 from .errors import (ArgumentError, DegenerateError, Error, LengthsError, LengthsWarning, MasslessWarning,
                      NoConvergenceError, NotDefiniteError, NotFiniteError, NumberError, OutOfMemoryError, ReferenceWarning,
                      SharedAtomError, StateError, UnsupportedError)
+from .equimomental import equimomental_points
 from .factors import Factors
 from .inverse import Inverse
 from .molecules import Molecules
-from .equimomental import equimomental_points
 from .partition import PartitionFunction, partition_function
 from .results import Forces, Impulse, Metric, Outcomes, Reactions, Report, Violation
 
@@ -29,5 +29,6 @@ __all__ = [
     "LengthsWarning", "MasslessWarning", "Metric", "Molecule", "Molecules", "NoConvergenceError", "NotDefiniteError",
     "NotFiniteError", "NumberError", "OutOfMemoryError", "Outcomes", "PartitionFunction", "Reactions",
     "ReferenceWarning", "Report", "SharedAtomError",
-    "StateError", "UnsupportedError", "Violation", "equimomental_points", "instruction_set", "partition_function", "tridiagonal", "version",
+    "StateError", "UnsupportedError", "Violation", "equimomental_points", "instruction_set", "partition_function",
+    "tridiagonal", "version",
 ]

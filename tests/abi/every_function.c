@@ -325,6 +325,12 @@ static void bodies(void)
     NEAR(g[3], 1);
     NEAR(tension, 7);
     hol_chains_destroy(rods);
+    const double inertia[9] = {0, 0, 0, 0, 2, 0, 0, 0, 2};
+    double masses_of_points[4], places[12];
+    int64_t n_points;
+    SUCCEEDS(hol_equimomental_points(2, NULL, inertia, &n_points, masses_of_points, places));
+    EXPECT(n_points == 2);
+    NEAR(fabs(places[0]), 1);
 }
 
 /* A rigid triangle and three beads on one, all of mass 1, pulled apart. */
