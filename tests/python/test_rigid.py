@@ -100,7 +100,7 @@ class Bodies(unittest.TestCase):
         molecules.add_rigid([range(5)], [r])
         forces = np.zeros((5, 3))
         forces[4] = f
-        total = forces + molecules.forces(r, np.cross(omega, r), forces).g
+        total = forces + molecules.forces(r, np.cross(omega, r), forces).forces
         alpha = (np.cross(site, f) - np.cross(omega, moments * omega)) / moments
         a = f / mass + np.cross(alpha, x) + np.cross(omega, np.cross(omega, x))
         self.assertLess(np.abs(total[:4] / masses[:, None] - a).max(), 1e-13)
