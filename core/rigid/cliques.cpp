@@ -123,12 +123,13 @@ private:
         if (is_together(atoms) || found_.linear.has_together(atoms) || !depend(atoms)) return;
         if (left_out_.empty()) return found_.shared.push_back(bond);
         Group group = look_at(distances(atoms), tolerance_);
+        const Decimals decimals(distances(atoms), tolerance_);
         std::vector<std::int64_t> all = atoms;
         std::vector<double> places = group.places;
         for (std::size_t next = 0; next < all.size(); ++next)
             for (const Partner &partner : bonds_of_.at(all[next]))
                 if (std::count(all.begin(), all.end(), partner.atom) == 0)
-                    join(partner.atom, group.dimension, all, places);
+                    join(partner.atom, group.dimension, decimals, all, places);
         if (all.size() > atoms.size()) group.misfit = fit_places(distances(all), group.dimension, places);
         if (group.misfit.error > Decimals(distances(all), tolerance_).most()) refuse(all, group.misfit);
         note(all, group.misfit);
@@ -218,10 +219,11 @@ private:
 
     void take(std::vector<std::int64_t> atoms, std::vector<double> places, int dimension) {
         const std::size_t body = found_.sizes.size(), n = atoms.size();
+        const Decimals decimals(distances(atoms), tolerance_);
         for (const std::int64_t atom : atoms) body_of_[atom] = body;
         for (std::size_t next = 0; next < atoms.size(); ++next)
             for (const Partner &partner : bonds_of_.at(atoms[next]))
-                if (is_free(partner.atom) && join(partner.atom, dimension, atoms, places))
+                if (is_free(partner.atom) && join(partner.atom, dimension, decimals, atoms, places))
                     body_of_[partner.atom] = body;
         const Distances wanted = distances(atoms);
         const Misfit misfit = atoms.size() == n ? misfit_of(wanted, places) : fit_places(wanted, dimension, places);
@@ -239,7 +241,8 @@ private:
     }
 
     // An atom joins a body that holds it by more distances than its place has coordinates, all of which it fits.
-    bool join(std::int64_t atom, int dimension, std::vector<std::int64_t> &atoms, std::vector<double> &places) const {
+    bool join(std::int64_t atom, int dimension, const Decimals &of_body, std::vector<std::int64_t> &atoms,
+              std::vector<double> &places) const {
         std::vector<std::int64_t> near{atom};
         std::vector<double> there{0, 0, 0};
         for (std::size_t a = 0; a < atoms.size(); ++a) {
@@ -254,7 +257,10 @@ private:
         if (!locate(wanted, dimension, there)) return false;
         const Misfit misfit = misfit_of(wanted, there);
         const Decimals decimals(distances(near), tolerance_);
-        if (dimension < 3 ? !decimals.allow_joining(misfit) : misfit.error > 4 * decimals.most()) return false;
+        const auto allows = [&](const Decimals &open) {
+            return dimension < 3 ? open.allow_joining(misfit) : misfit.error <= 4 * open.most();
+        };
+        if (!allows(decimals) && !allows(of_body)) return false;
         atoms.push_back(atom);
         places.insert(places.end(), there.begin(), there.begin() + 3);
         return true;
