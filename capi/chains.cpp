@@ -146,6 +146,28 @@ int hol_chains_set_labels(hol_chains *chains, const int64_t *atoms, const int64_
     });
 }
 
+int hol_chains_add_bonds_with_images(hol_chains *chains, int64_t n_bonds, const int64_t *pairs, const double *lengths,
+                                     const int64_t *images) {
+    return guarded(__func__, [&] {
+        need(chains, "chains");
+        if (n_bonds < 0 || n_bonds > int64_t{1} << 30)
+            throw make_error(Status::value, "n_bonds is %lld; it must be in 0 .. 2^30",
+                             static_cast<long long>(n_bonds));
+        need(n_bonds, pairs, "pairs");
+        need(n_bonds, lengths, "lengths");
+        need(n_bonds, images, "images");
+        chains->chains.add_with_images(n_bonds, pairs, lengths, images);
+    });
+}
+
+int hol_chains_set_images(hol_chains *chains, const int64_t *images) {
+    return guarded(__func__, [&] {
+        need(chains, "chains");
+        need(chains->n_bonds(), images, "images");
+        chains->chains.set_images(images);
+    });
+}
+
 int hol_chains_set_lengths(hol_chains *chains, const double *lengths) {
     return guarded(__func__, [&] {
         need(chains, "chains");

@@ -12,7 +12,7 @@ using holonomic::need;
 namespace {
 
 void check(const hol_chains *chains, const AtomArray &r, hol_which_box box) {
-    const holonomic::Box &its = holonomic::box_of(chains, box);
+    const holonomic::Cell &its = holonomic::box_of(chains, box);
     const holonomic::Chains &c = chains->chains;
     holonomic::Worst worst;
     holonomic::violation(c, r, AtomArray{}, &worst);  // finds what is not finite

@@ -323,6 +323,29 @@ HOL_API int hol_chains_add_rigid_molecules(hol_chains *chains, int64_t n_molecul
                                            const double *lengths);
 
 /**
+ * Two to four equal mass points that have the mass, the centre and the moments of inertia of a rigid body (an
+ * equimomental system): how a body that is given by its inertia tensor comes to hol_chains_add_rigid. The points are
+ * atoms of these masses, and what the body carries are massless sites of it, atoms of mass 0, with places in the same
+ * frame. docs/rigid.md.
+ * @param[in]  mass      of the body, > 0
+ * @param[in]  centre    [3], its centre of mass, in the frame of the places; NULL: the origin
+ * @param[in]  inertia   [3][3], sum m (x.x 1 - x x^T) about the centre: symmetric to 1e-10, moments on the diagonal,
+ *                       products with the minus sign beside it. One principal moment may be 0 (a linear body), and one
+ *                       the sum of the others (a flat one)
+ * @param[out] n_points  2 for a linear body, 3 for a flat one, otherwise 4
+ * @param[out] masses    [4], of which n_points are written: mass / n_points each
+ * @param[out] places    [4][3], likewise (Fortran: (3, 4))
+ *
+ * Moments are those of the tensor to rounding. Where the largest is above the sum of the others by no more than 1e-5 of it,
+ * as digits of a file may leave it, the body is flat, or linear.
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE: the mass; numbers that are not finite; a tensor that is not symmetric, is
+ *         0, has a negative moment, or one above the sum of the others, which no distribution of mass has. On an error
+ *         nothing is written. Thread-safe. Since 0.3.
+ */
+HOL_API int hol_equimomental_points(double mass, const double *centre, const double *inertia, int64_t *n_points,
+                                    double *masses, double *places);
+
+/**
  * Adds linear relations among atoms, sum_i c_i r_i = 0 with constant c_i, and bonds of the molecules in which these
  * are: a site by its base and coefficients (r_s = a r_1 + b r_2 + ..), atoms that are one point (1, -1), centroids and
  * centres of mass of flexible groups that coincide. A relation is three equations, which have no coordinates in them:
@@ -373,6 +396,50 @@ HOL_API int hol_chains_add_linear_molecules(hol_chains *chains, int64_t n_molecu
                                             int64_t first_atom, int64_t n_relations, const int64_t *sizes,
                                             const int64_t *atoms, const double *coefficients, int64_t n_bonds,
                                             const int64_t *pairs, const double *lengths);
+
+/**
+ * Adds bonds whose periodic images are told, and not taken as the nearest ones: a bond of more than half the box (a
+ * reaction coordinate in a small cell), or one that goes round it. The vector of bond k, with the atoms i and j as they
+ * are given, is
+ *
+ *     d = r_j - r_i + images[k][0] a + images[k][1] b + images[k][2] c
+ *
+ * with a, b, c the rows of the box as hol_chains_set_box has got it (of the reference those of its own box).
+ * @param[in,out] chains
+ * @param[in]     n_bonds  >= 0
+ * @param[in]     pairs    [n_bonds][2]
+ * @param[in]     lengths  [n_bonds], as in hol_chains_add; the box may be narrower than twice that. Copied.
+ * @param[in]     images   [n_bonds][3], in numbers of box vectors; all 0: as the atoms stand (Fortran: (3, n_bonds)).
+ *                         Copied.
+ *
+ * All bonds of these molecules are such bonds. Without a box, and along a vector that is none, images are not looked
+ * at. Where a program moves atoms by box vectors between two calls, hol_chains_set_images tells it; within a position
+ * step r_ref and r have the same images. Distances that depend on each other are no bodies here, and are found by the
+ * calls that meet them. These molecules are numbered and treated as those with bodies (hol_chains_add_rigid), and take
+ * some 1 to 6 microseconds for each few bonds: hol_metric, hol_inverse_create and hol_project_positions_along refuse
+ * such sets or molecules (HOL_ERR_UNSUPPORTED).
+ * @return as hol_chains_add_bonds; HOL_ERR_VALUE also for a bond between two fixed atoms and for images beyond 2^31. On
+ *         an error nothing is added. Since 0.3.
+ */
+HOL_API int hol_chains_add_bonds_with_images(hol_chains *chains, int64_t n_bonds, const int64_t *pairs,
+                                             const double *lengths, const int64_t *images);
+
+/**
+ * New images of bonds that hol_chains_add_bonds_with_images has added.
+ * @param[in,out] chains
+ * @param[in]     images  [n_bonds][3], of all bonds of the set; 0 for those whose images are the nearest ones. Copied.
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (of a bond that was added without images they are not 0: the message
+ *         names it). On an error nothing is changed. Not thread-safe on one handle. O(n_bonds). Since 0.3.
+ */
+HOL_API int hol_chains_set_images(hol_chains *chains, const int64_t *images);
+
+/**
+ * The images of bonds that were told.
+ * @param[in]  chains
+ * @param[out] images  [n_bonds][3]; 0 for bonds that were added without (Fortran: (3, n_bonds))
+ * @return HOL_OK; HOL_ERR_NULL. O(n_bonds). Since 0.3.
+ */
+HOL_API int hol_chains_images(const hol_chains *chains, int64_t *images);
 
 /**
  * New lengths for all bonds, without building the set again.
@@ -621,7 +688,7 @@ typedef enum hol_shape HOL_IS_INT {
     HOL_SHAPE_RING = 2,     /**< one cycle of at least four bonds and nothing else */
     HOL_SHAPE_TRIANGLE = 3, /**< three atoms and their three distances */
     HOL_SHAPE_OTHER = 4,    /**< anything else that has a cycle */
-    HOL_SHAPE_RIGID = 5     /**< with rigid bodies (hol_chains_add_rigid) */
+    HOL_SHAPE_RIGID = 5     /**< with rigid bodies, linear relations or images that are told */
 } hol_shape;
 
 /** Number of molecules of an hol_shape; 0 if chains is NULL or for any other number. O(n_molecules). Since 0.2. */

@@ -108,12 +108,19 @@ int hol_chains_masses(const hol_chains *chains, double *masses) {
     });
 }
 
+int hol_chains_images(const hol_chains *chains, int64_t *images) {
+    return guarded(__func__, [&] {
+        need(chains, "chains");
+        need(chains->n_bonds(), images, "images");
+        chains->chains.images(images);
+    });
+}
+
 int hol_chains_box(const hol_chains *chains, hol_which_box which, double *box) {
     return guarded(__func__, [&] {
         need(chains, "chains");
         need(box, "box");
-        const double *const given =
-            is_reference(which) ? chains->chains.given_reference_box() : chains->chains.given_box();
+        const double *const given = holonomic::box_of(chains, which).given;
         std::copy(given, given + 9, box);
     });
 }

@@ -12,7 +12,7 @@ inline bool is_reference(hol_which_box box) {
         throw make_error(Status::value, "box is %d; it must be HOL_BOX or HOL_REFERENCE_BOX", static_cast<int>(box));
     return box == HOL_REFERENCE_BOX;
 }
-inline const Box &box_of(const hol_chains *chains, hol_which_box box) {
+inline const Cell &box_of(const hol_chains *chains, hol_which_box box) {
     return is_reference(box) ? chains->chains.box_of_reference() : chains->chains.box;
 }
 

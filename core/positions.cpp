@@ -179,7 +179,7 @@ void project_positions_of_bonds(const Chains &chains, PositionsCall &call, const
 // All molecules are looked at before any is moved.
 void check_start_of_all(const Chains &chains, const AtomArray &r_ref, const AtomArray &r) {
     if (!chains.wants_fit()) return;
-    const Box &box = chains.box_of_reference();
+    const Cell &box = chains.box_of_reference();
     check_reference(chains, {&r_ref, nullptr, &box}, "in the reference");
     check_trial(chains, r);
     rigid::check_reference(chains, r_ref, box, "in the reference");

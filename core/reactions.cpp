@@ -197,7 +197,7 @@ struct ReactionsWork final : Work {
 
 }  // namespace
 
-Tally react(const Chains &chains, const AtomArray &r, const Box &box, const double *lambda, const Reactions &out) {
+Tally react(const Chains &chains, const AtomArray &r, const Cell &box, const double *lambda, const Reactions &out) {
     const Call call{r, out.g, lambda, out.lambda, out.tension, out.bond_virial, out.add, out.virial, &box};
     Apart apart(chains, 6);
     const Tally tally = execute(chains, ReactionsWork(call, apart));
@@ -210,7 +210,7 @@ Tally react(const Chains &chains, const AtomArray &r, const Box &box, const doub
 
 namespace {
 
-void reactions_of_bonds(const Chains &chains, const AtomArray &r, const Box &box, const double *lambda, Reactions out,
+void reactions_of_bonds(const Chains &chains, const AtomArray &r, const Cell &box, const double *lambda, Reactions out,
                         double *virial) {
     out.virial = virial != nullptr;
     const Tally tally = react(chains, r, box, lambda, out);
@@ -224,7 +224,7 @@ void reactions_of_bonds(const Chains &chains, const AtomArray &r, const Box &box
 
 }  // namespace
 
-void reactions(const Chains &chains, const AtomArray &r, const Box &box, const double *lambda, Reactions out,
+void reactions(const Chains &chains, const AtomArray &r, const Cell &box, const double *lambda, Reactions out,
                double *virial) {
     if (!chains.bodies()) return reactions_of_bonds(chains, r, box, lambda, out, virial);
     double sum[9];

@@ -16,10 +16,10 @@ struct Reactions {
 };
 
 // The box is that of r. A molecule with anything that is not finite is counted as bad, and nothing of it is written.
-Tally react(const Chains &chains, const AtomArray &r, const Box &box, const double *lambda, const Reactions &out);
+Tally react(const Chains &chains, const AtomArray &r, const Cell &box, const double *lambda, const Reactions &out);
 
 // virial [9] or nullptr; out.virial is set by it. Throws Error once everything that is due has been written.
-void reactions(const Chains &chains, const AtomArray &r, const Box &box, const double *lambda, Reactions out,
+void reactions(const Chains &chains, const AtomArray &r, const Cell &box, const double *lambda, Reactions out,
                double *virial);
 
 }  // namespace holonomic

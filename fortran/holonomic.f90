@@ -26,6 +26,7 @@ module holonomic
                           HOL_PHYSICAL, HOL_SHAPE_CHAIN, HOL_SHAPE_OTHER, HOL_SHAPE_RIGID, HOL_SHAPE_RING, &
                           HOL_SHAPE_TREE, &
                           HOL_SHAPE_TRIANGLE, HOL_UNIT_DIAGONAL
+   use holonomic_equimomental, only: equimomental_points
    use holonomic_factors, only: hol_factors
    use holonomic_inverse, only: hol_inverse
    use holonomic_metric, only: chain_set_metric
@@ -37,7 +38,7 @@ module holonomic
    public :: hol_chains, hol_factors, hol_inverse, hol_report, hol_worst
    public :: hol_version, hol_version_number, hol_status_name, hol_instruction_set, hol_error_location
    public :: hol_tridiagonal_pivots, hol_tridiagonal_log_det, hol_tridiagonal_solve, hol_tridiagonal_inverse_entry, &
-             hol_tridiagonal_inverse_band, hol_partition_function
+             hol_tridiagonal_inverse_band, hol_partition_function, hol_equimomental_points
    public :: HOL_OK, HOL_ERR_NULL, HOL_ERR_VALUE, HOL_ERR_INDEX, HOL_ERR_SHARED_ATOM, HOL_ERR_MEMORY, &
              HOL_ERR_NOT_FINITE, HOL_ERR_DEGENERATE, HOL_ERR_NO_CONVERGENCE, HOL_ERR_NOT_DEFINITE, HOL_ERR_INTERNAL, &
              HOL_ERR_LENGTHS, HOL_ERR_UNSUPPORTED, HOL_ERR_STATE, HOL_ERR_CALLBACK, HOL_BODIES_FOUND, HOL_BODIES_GIVEN, &
@@ -69,6 +70,10 @@ module holonomic
 
    interface hol_tridiagonal_inverse_band
       procedure :: inverse_band
+   end interface
+
+   interface hol_equimomental_points
+      procedure :: equimomental_points
    end interface
 
    interface hol_partition_function

@@ -40,6 +40,12 @@ module holonomic_c_given
 #define NAME hol_chains_pairs
 #define POINTERS chains, pairs
 #include "c_function.inc"
+#define NAME hol_chains_images
+#define POINTERS chains, images
+#include "c_function.inc"
+#define NAME hol_chains_set_images
+#define POINTERS chains, images
+#include "c_function.inc"
 #define NAME hol_chains_lengths
 #define POINTERS chains, lengths
 #include "c_function.inc"

@@ -1,4 +1,4 @@
-! The part of the C interface about the metric determinant, the inverse, tridiagonal algebra and partition functions; use
+! The part of the C interface about the metric determinant, the inverse, tridiagonal algebra, mass points and partition functions; use
 ! the module holonomic_c, which has all parts.
 module holonomic_c_metric
    use, intrinsic :: iso_c_binding, only: c_double, c_int, c_int64_t, c_ptr
@@ -129,6 +129,15 @@ module holonomic_c_metric
          type(c_ptr), value :: gamma
          integer(c_int64_t), value :: width
          type(c_ptr), value :: band
+         integer(c_int) :: status
+      end function
+
+      ! ------------------------------------------------------------------------------------------ equimomental points
+
+      function hol_equimomental_points(mass, centre, inertia, n_points, masses, places) bind(c) result(status)
+         import :: c_double, c_int, c_ptr
+         real(c_double), value :: mass
+         type(c_ptr), value :: centre, inertia, n_points, masses, places
          integer(c_int) :: status
       end function
 

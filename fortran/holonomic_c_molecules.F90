@@ -83,6 +83,14 @@ module holonomic_c_molecules
          integer(c_int) :: status
       end function
 
+      function hol_chains_add_bonds_with_images(chains, n_bonds, pairs, lengths, images) bind(c) result(status)
+         import :: c_int, c_int64_t, c_ptr
+         type(c_ptr), value :: chains
+         integer(c_int64_t), value :: n_bonds
+         type(c_ptr), value :: pairs, lengths, images
+         integer(c_int) :: status
+      end function
+
       function hol_chains_add_linear(chains, n_relations, sizes, atoms, coefficients, n_bonds, pairs, lengths) bind(c) &
          result(status)
          import :: c_int, c_int64_t, c_ptr

@@ -2,7 +2,7 @@
 module holonomic_settings
    use, intrinsic :: iso_c_binding, only: c_int, c_int64_t, c_loc, c_null_ptr, c_ptr, c_signed_char
    use, intrinsic :: iso_fortran_env, only: int32, int64, real32, real64
-   use holonomic_linear, only: chain_set_linear
+   use holonomic_images, only: chain_set_images
    use holonomic_c, only: hol_chains_n_atoms, hol_chains_n_bonds, hol_chains_n_molecules, hol_chains_set_active, &
                           hol_chains_set_box, hol_chains_set_box_rate, hol_chains_set_checks, hol_chains_set_labels, &
                           hol_chains_set_lengths, hol_chains_set_masses, &
@@ -15,7 +15,7 @@ module holonomic_settings
    private
    public :: chain_set_settings
 
-   type, extends(chain_set_linear) :: chain_set_settings
+   type, extends(chain_set_images) :: chain_set_settings
    contains
       procedure, private :: set_box_matrix, set_box_lengths, set_box_matrix_32, set_box_lengths_32
       generic :: set_box => set_box_matrix, set_box_lengths, set_box_matrix_32, set_box_lengths_32

@@ -109,6 +109,13 @@ Box make_box(const double *h) {
     return next;
 }
 
+Cell make_cell(const double *h) {
+    Cell cell{};
+    static_cast<Box &>(cell) = make_box(h);
+    if (h) std::copy(h, h + 9, cell.given);
+    return cell;
+}
+
 namespace {
 
 // The distance of opposite faces is one over the gradient of the fractional coordinate.

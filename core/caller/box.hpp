@@ -8,8 +8,14 @@
 
 namespace holonomic {
 
+// A box and its vectors as they were given, of which image flags count.
+struct Cell : Box {
+    double given[9];  // zeros: no box
+};
+
 // h [9]: rows are the box vectors, a row of zeros is not periodic; null: no box. Throws Error.
 Box make_box(const double *h);
+Cell make_cell(const double *h);
 
 // The box of a call. Of one that is not there nothing but that is read or copied: a box is larger than all that a call
 // on one short chain reads.

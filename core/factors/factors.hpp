@@ -48,7 +48,7 @@ private:
 
     const Chains &chains_;
     std::int64_t revision_ = -1;  // of the set, at the last update
-    Box box_{};
+    Cell box_{};
     bool has_rate_ = false;
     double L_[9] = {};
     std::vector<double> r_;  // [n_atoms][3]

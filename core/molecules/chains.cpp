@@ -63,25 +63,17 @@ void Chains::check_width(const Box &next, double longest, const double *lengths)
         width, longest, atoms);
 }
 
-Chains::GivenBox Chains::given(const double *h) {
-    GivenBox box{};
-    if (h) std::copy(h, h + 9, box.h);
-    return box;
-}
-
 void Chains::set_box(const double *h) {
-    const Box next = make_box(h);
+    const Cell next = make_cell(h);
     check_width(next, longest(), nullptr);
     box = next;
-    given_box_ = given(h);
     box_changed(box, seen_box_);
 }
 
 void Chains::set_reference_box(const double *h) {
-    const Box next = make_box(h);
+    const Cell next = make_cell(h);
     check_width(next, longest(), nullptr);
     reference_box_ = next;
-    given_reference_box_ = given(h);
     has_reference_box_ = h != nullptr;
     box_changed(reference_box_, seen_reference_);
 }

@@ -82,6 +82,14 @@ public:
     void set_reference_box(const double *h);
     void set_box_rate(const double *L);
 
+    // core/rigid/images.cpp. Bonds whose images are told, [n_bonds][3] of the vectors of the box; of all bonds of the
+    // set.
+    void add_with_images(std::int64_t n_bonds, const std::int64_t *pairs, const double *lengths,
+                         const std::int64_t *images);
+    void set_images(const std::int64_t *images);
+    void images(std::int64_t *out) const;
+    const std::int32_t *images() const { return images_.data(); }
+
     // queries.cpp; those up to `memory` know molecules with bodies, too. Molecules, atoms and bonds are counted from 0,
     // but in what is written for the caller.
     std::int64_t n_atoms() const { return n_atoms_; }
@@ -104,8 +112,6 @@ public:
     void active(unsigned char *out) const;                          // [n_molecules]
     void roles(std::int32_t *role, std::int64_t *n_removed) const;  // [n_bonds] a Role each, [n_molecules]; or null
     void held_sites(unsigned char *held) const;                     // held_sites.cpp [n_atoms] 1 or 0
-    const double *given_box() const { return given_box_.h; }        // [9], zeros: none
-    const double *given_reference_box() const { return has_reference_box_ ? given_reference_box_.h : given_box_.h; }
     std::int64_t degrees_of_freedom(int dimensions) const;
     Name name_of_atom(std::int64_t atom) const { return labels_.of_atom(atom, base); }
     // The length that a body changed most, by which part of it; 0 and bond -1: none.
@@ -135,7 +141,7 @@ public:
         return true;
     }
     Lane lane(std::int64_t molecule) const;  // of a linear chain
-    const Box &box_of_reference() const { return has_reference_box_ ? reference_box_ : box; }
+    const Cell &box_of_reference() const { return has_reference_box_ ? reference_box_ : box; }
     const BoxRate *box_rate() const { return has_box_rate_ ? &box_rate_ : nullptr; }
 
     // plan.cpp
@@ -177,7 +183,7 @@ public:
     bool keeps_outcomes = false;    // core/run/outcomes.hpp
     bool finds_bodies = true;       // in lists of bonds whose lengths depend on each other; else they are refused
     std::int64_t memory_limit = 0;  // bytes; 0: the default (memory_limit.hpp)
-    Box box{};
+    Cell box{};
 
 private:
     friend class Batch;
@@ -240,12 +246,9 @@ private:
     std::vector<unsigned char> active_;     // [n_chains] or empty: all
     Owned<rigid::Bodies> bodies_;
     Adjustment adjustment_;
+    std::vector<std::int32_t> images_;  // [..][3] of the first bonds; looked at for those that have been told alone
     Labels labels_;
-    Box reference_box_{};
-    struct GivenBox {
-        double h[9];
-    } given_box_{}, given_reference_box_{};
-    static GivenBox given(const double *h);
+    Cell reference_box_{};
     BoxRate box_rate_{};
     bool has_reference_box_ = false, has_box_rate_ = false;
     Checks checks_ = Checks::at_start;

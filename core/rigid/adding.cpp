@@ -98,9 +98,10 @@ BodyName name_of_body(const Chains &chains, const rigid::Given &given, std::int6
              chains.base, given.bond_numbers[at(refusal.unsolvable.bond)], given.atoms[at(bond.i)]);
     }
     fail(make_error(Status::degenerate,
-                    "the molecule of %s has more bonds than its bodies and atoms have freedoms: they depend on each "
+                    "the molecule of %s%s has more bonds than its bodies and atoms have freedoms: they depend on each "
                     "other",
-                    name_of_body(chains, given, 0).text),
+                    given.sizes.empty() ? "atom " : "",
+                    given.sizes.empty() ? name(0).text : name_of_body(chains, given, 0).text),
          chains.base, -1, given.atoms[0]);
 }
 

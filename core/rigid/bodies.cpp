@@ -46,6 +46,7 @@ std::vector<double> signature_of(const Given &given) {
     count(given.bonds.size());
     words.push_back(given.n_movable);
     words.push_back(given.by_lengths);
+    words.push_back(given.has_images);
     for (const std::int32_t size : given.sizes) words.push_back(size);
     words.insert(words.end(), given.place.begin(), given.place.end());
     words.insert(words.end(), given.masses.begin(), given.masses.end());
@@ -119,6 +120,7 @@ std::int32_t Bodies::find_shape(const Given &given) {
     shape.mass = given.masses;
     shape.bonds = given.bonds;
     shape.by_lengths = given.by_lengths;
+    shape.has_images = given.has_images;
     shape.hidden = given.hidden;
     shape.links = given.links;
     for (std::size_t b = 0; b < given.sizes.size(); ++b) {
@@ -174,6 +176,7 @@ Given Bodies::given(std::int64_t molecule) const {
     given.bond_numbers.assign(numbers, numbers + its.bonds.size());
     given.n_movable = its.n_movable;
     given.by_lengths = its.by_lengths;
+    given.has_images = its.has_images;
     given.hidden = its.hidden;
     given.links = its.links;
     given.masses = its.mass;

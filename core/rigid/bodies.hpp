@@ -27,6 +27,7 @@ struct Given {
     std::int32_t n_movable = 0;
     std::vector<Bond> bonds;
     std::vector<std::int64_t> bond_numbers;  // in the arrays per bond
+    bool has_images = false;                 // of its bonds, which are told (images.cpp)
     bool by_lengths = false;                 // bonds within bodies are what holds these, and have multipliers
     std::vector<Loose> loose;                // of the bodies, or empty: all are rigid
     std::vector<Bond> hidden;                // distances that are held and are no bonds of the caller's

@@ -125,11 +125,9 @@ private:
         Group group = look_at(distances(atoms), tolerance_);
         std::vector<std::int64_t> all = atoms;
         std::vector<double> places = group.places;
-        for (std::size_t next = 0; next < all.size(); ++next)
-            for (const Partner &partner : bonds_of_.at(all[next]))
-                if (std::count(all.begin(), all.end(), partner.atom) == 0)
-                    join(partner.atom, group.dimension, all, places);
-        if (all.size() > atoms.size()) group.misfit = fit_places(distances(all), group.dimension, places);
+        group.misfit = join_all(
+            group.dimension, all, places, [&](Atom atom) { return std::count(all.begin(), all.end(), atom) == 0; },
+            [](Atom) {});
         if (group.misfit.error > Decimals(distances(all), tolerance_).most()) refuse(all, group.misfit);
         note(all, group.misfit);
         found_.linear.add({std::move(all), std::move(places), group.dimension});
@@ -217,19 +215,34 @@ private:
     }
 
     void take(std::vector<std::int64_t> atoms, std::vector<double> places, int dimension) {
-        const std::size_t body = found_.sizes.size(), n = atoms.size();
+        const std::size_t body = found_.sizes.size();
         for (const std::int64_t atom : atoms) body_of_[atom] = body;
-        for (std::size_t next = 0; next < atoms.size(); ++next)
-            for (const Partner &partner : bonds_of_.at(atoms[next]))
-                if (is_free(partner.atom) && join(partner.atom, dimension, atoms, places))
-                    body_of_[partner.atom] = body;
+        const Misfit misfit = join_all(
+            dimension, atoms, places, [&](Atom atom) { return is_free(atom); },
+            [&](Atom atom) { body_of_[atom] = body; });
         const Distances wanted = distances(atoms);
-        const Misfit misfit = atoms.size() == n ? misfit_of(wanted, places) : fit_places(wanted, dimension, places);
         if (misfit.error > Decimals(wanted, tolerance_).most()) refuse(atoms, misfit);
         note(atoms, misfit);
         found_.sizes.push_back(static_cast<std::int64_t>(atoms.size()));
         found_.atoms.insert(found_.atoms.end(), atoms.begin(), atoms.end());
         found_.places.insert(found_.places.end(), places.begin(), places.end());
+    }
+
+    // All atoms that join a body; its places are those that fit best. Errors of places add up while atoms join: what
+    // does not fit then may fit the best ones.
+    template <class May, class Take>
+    Misfit join_all(int dimension, std::vector<std::int64_t> &atoms, std::vector<double> &places, const May &may,
+                    const Take &take) const {
+        const Decimals decimals(distances(atoms), tolerance_);
+        Misfit misfit = misfit_of(distances(atoms), places);
+        for (std::size_t before = 0; before != atoms.size();) {
+            before = atoms.size();
+            for (std::size_t next = 0; next < atoms.size(); ++next)
+                for (const Partner &partner : bonds_of_.at(atoms[next]))
+                    if (may(partner.atom) && join(partner.atom, dimension, decimals, atoms, places)) take(partner.atom);
+            if (atoms.size() != before) misfit = fit_places(distances(atoms), dimension, places);
+        }
+        return misfit;
     }
 
     void note(const std::vector<std::int64_t> &atoms, const Misfit &misfit) {
@@ -239,7 +252,8 @@ private:
     }
 
     // An atom joins a body that holds it by more distances than its place has coordinates, all of which it fits.
-    bool join(std::int64_t atom, int dimension, std::vector<std::int64_t> &atoms, std::vector<double> &places) const {
+    bool join(std::int64_t atom, int dimension, const Decimals &of_body, std::vector<std::int64_t> &atoms,
+              std::vector<double> &places) const {
         std::vector<std::int64_t> near{atom};
         std::vector<double> there{0, 0, 0};
         for (std::size_t a = 0; a < atoms.size(); ++a) {
@@ -253,8 +267,11 @@ private:
         for (std::int64_t i = 1; i < wanted.n; ++i) wanted.at(i, 0) = length_between(atom, near[at(i)]);
         if (!locate(wanted, dimension, there)) return false;
         const Misfit misfit = misfit_of(wanted, there);
-        const Decimals decimals(wanted, tolerance_);
-        if (dimension < 3 ? !decimals.allow_joining(misfit) : misfit.error > 4 * decimals.most()) return false;
+        const Decimals decimals(distances(near), tolerance_);
+        const auto allows = [&](const Decimals &open) {
+            return dimension < 3 ? open.allow_joining(misfit) : misfit.error <= 4 * open.most();
+        };
+        if (!allows(decimals) && !allows(of_body)) return false;
         atoms.push_back(atom);
         places.insert(places.end(), there.begin(), there.begin() + 3);
         return true;

@@ -112,13 +112,13 @@ private:
 // Of the square of a height, relative to the largest, which independence is a matter of for few atoms.
 double of_heights(const Distances &wanted) { return 2 * epsilon * static_cast<double>(wanted.n - 2); }
 
-// The least number of decimals that all values have, to a few roundings; -1 if more than `most`, or if so many
-// decimals are all that a number of this size has: what is as near by chance is not rounded.
-int decimals_of(const Distances &wanted, int most, bool of_squares) {
-    constexpr double likely = 3e-4;
-    std::vector<double> values(wanted.length);
-    std::sort(values.begin(), values.end());
-    values.erase(std::unique(values.begin(), values.end()), values.end());
+bool is_float(double x) { return static_cast<double>(static_cast<float>(x)) == x; }
+
+// The least number of decimals that all values have, to a few roundings of doubles, or of floats that became doubles;
+// -1 if more than `most`, or if so many decimals are all that a number of this size has: what is as near by chance is
+// not rounded.
+int decimals_of(const std::vector<double> &values, int most, bool of_squares) {
+    constexpr double likely = 3e-4, of_float = 0.51 * std::numeric_limits<float>::epsilon();
     double scale = 1;
     for (int p = 0; p <= most; ++p, scale *= 10) {
         double chance = 1;
@@ -126,13 +126,44 @@ int decimals_of(const Distances &wanted, int most, bool of_squares) {
             const double x = of_squares ? length * scale * (length * scale) : length * scale;
             // Coordinates far from the origin are off by more than these squares are.
             const double of_places = of_squares ? std::min(1e-12 * scale * scale, 0.03) : 0;
-            const double margin = std::max(4 * epsilon * x, of_places);
-            if (length > 0) chance *= std::min(1.0, 2 * margin);
-            return (length == 0 || x >= 0.5) && std::fabs(x - std::round(x)) <= margin;
+            const double margin = std::max((is_float(length) ? of_float : 4 * epsilon) * x, of_places);
+            chance *= std::min(1.0, 2 * margin);
+            return x >= 0.5 && std::fabs(x - std::round(x)) <= margin;
         };
         if (std::all_of(values.begin(), values.end(), fits)) return chance < likely ? p : -1;
     }
     return -1;
+}
+
+// Fewer than three decimals are a round number, not a rounded one.
+constexpr int few_decimals = 3;
+
+// The coarsest of the roundings that single lengths show: others may have more decimals, or full digits.
+struct Roundings {
+    double coarsest = 0;
+    std::ptrdiff_t count = 0;
+};
+Roundings roundings_of(const std::vector<double> &values) {
+    Roundings found;
+    for (const double value : values) {
+        const int p = decimals_of({value}, 9, false);
+        const double rounded = p >= few_decimals          ? std::pow(10.0, -p)
+                               : p < 0 && is_float(value) ? std::numeric_limits<float>::epsilon() * value
+                                                          : 0;
+        found.coarsest = std::max(found.coarsest, rounded);
+        found.count += p >= 0 || rounded > 0;
+    }
+    return found;
+}
+
+// Those that are held, each once, whatever its last digits.
+std::vector<double> values_of(const Distances &wanted) {
+    std::vector<double> values(wanted.length);
+    std::sort(values.begin(), values.end());
+    const auto alike = [](double a, double b) { return b - a <= 8 * epsilon * b; };
+    values.erase(std::unique(values.begin(), values.end(), alike), values.end());
+    if (!values.empty() && values.front() == 0) values.erase(values.begin());
+    return values;
 }
 
 // Whether places on a grid of so many decimals would be on a line or in a plane: what is off it then is no rounding.
@@ -200,16 +231,21 @@ Misfit fit_places(const Distances &wanted, int dimension, std::vector<double> &p
 
 Decimals::Decimals(const Distances &wanted, double tolerance)
     : open_(wanted.n < 5 ? of_few : of_many), most_(rounding) {
-    double least = std::numeric_limits<double>::infinity();
-    for (const double length : wanted.length)
-        if (length > 0) least = std::min(least, length);
-    const int of_lengths = decimals_of(wanted, 12, false);
-    int of_places = of_lengths < 0 ? decimals_of(wanted, 6, true) : -1;
+    const std::vector<double> values = values_of(wanted);
+    if (values.empty()) return;
+    const double least = values.front();
+    const int of_lengths = decimals_of(values, 12, false);
+    const Roundings singles = roundings_of(values);
+    // Coordinates leave few distances with decimals of their own: those along an axis.
+    const bool may_be_places = of_lengths < 0 && 2 * singles.count < static_cast<std::ptrdiff_t>(values.size());
+    int of_places = may_be_places ? decimals_of(values, 6, true) : -1;
     if (of_places >= 0 && wanted.n < 5 && are_flat_on_grid(wanted, of_places)) of_places = -1;
-    // Fewer than three are a round number, not a rounded one.
-    if (of_lengths >= 0) open_ = std::max(open_, std::pow(10.0, -std::max(of_lengths, 3)) / least);
-    if (of_places >= 0) open_ = std::max(open_, 2 * std::pow(10.0, -2 * std::max(of_places, 3)) / (least * least));
-    are_full_ = of_lengths < 0 && of_places < 0;
+    const double of_single = of_places < 0 ? singles.coarsest : 0;
+    if (of_lengths >= 0) open_ = std::max(open_, std::pow(10.0, -std::max(of_lengths, few_decimals)) / least);
+    if (of_places >= 0)
+        open_ = std::max(open_, 2 * std::pow(10.0, -2 * std::max(of_places, few_decimals)) / (least * least));
+    open_ = std::max(open_, of_single / least);
+    are_full_ = of_lengths < 0 && of_places < 0 && of_single == 0;
     if (are_full_ && wanted.n < 5) highest_ = of_heights(wanted);
     if (tolerance > 0) most_ = std::max(tolerance, std::min(open_, 10 * tolerance));
 }

@@ -79,7 +79,7 @@ bool all_finite(const System &system, const PairVector *z) {
 
 struct ForcesWork final : Work {
     AtomArray r, v, f;
-    const Box &box;
+    const Cell &box;
     const BoxRate *rate;
     Outputs out;
     bool virial, in_order;
@@ -130,7 +130,7 @@ struct ForcesWork final : Work {
 
 struct SolveWork final : Work {
     AtomArray r;
-    const Box &box;
+    const Cell &box;
     const double *rhs;
     Outputs out;
     bool virial, in_order;

@@ -6,6 +6,7 @@
 #include <unordered_set>
 
 #include "core/rigid/rank_of_linear.hpp"
+#include "core/rigid/spread.hpp"
 
 namespace holonomic::rigid {
 
@@ -123,7 +124,8 @@ std::vector<std::int64_t> implied_beside(const Linear &linear, const Masses &mas
             body_of[cliques.atoms[next++]] = static_cast<std::int64_t>(b);
     RankOfLinear rank(linear);
     const auto is_fixed = [&](std::int64_t atom) { return masses.fixed(atom - list.base); };
-    // First those that bodies hold, then those between leaders, by which the others are best told, then shorter ones.
+    // First those that bodies hold, then those between leaders, by which the others are best told, then shorter ones;
+    // but last those that say little more than others do.
     struct Key {
         int rank;
         double length;
@@ -139,6 +141,15 @@ std::vector<std::int64_t> implied_beside(const Linear &linear, const Masses &mas
         order.push_back({within ? -1 : rank.followers(i, j), lengths[k % n_lengths], k});
     }
     std::sort(order.begin(), order.end());
+    Spread spread(linear);
+    std::vector<Key> last;
+    const auto says_little = [&](const Key &key) {
+        const bool far = spread.add(list.pairs[2 * key.bond], list.pairs[2 * key.bond + 1], key.rank < 0);
+        if (!far && key.rank >= 0) last.push_back(key);
+        return !far && key.rank >= 0;
+    };
+    order.erase(std::remove_if(order.begin(), order.end(), says_little), order.end());  // from first to last
+    order.insert(order.end(), last.begin(), last.end());
     std::vector<std::int64_t> found;
     for (const Key &key : order)
         if (rank.add(list.pairs[2 * key.bond], list.pairs[2 * key.bond + 1], is_fixed) && key.rank >= 0)

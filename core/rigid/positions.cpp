@@ -23,14 +23,14 @@ double size_of(const PairVector &a) {
 
 struct PositionsWork final : Work {
     AtomArray r_ref, r, v;
-    const Box &box_ref, &box;
+    const Cell &box_ref, &box;
     const BoxRate *rate;
     double dt, *lambda, tolerance;
     int most_iterations;
     bool virial, report, check;
     PositionsCall call;
 
-    PositionsWork(const Chains &chains, const AtomArray &r_ref_, const Box &box_ref_, const AtomArray &r_,
+    PositionsWork(const Chains &chains, const AtomArray &r_ref_, const Cell &box_ref_, const AtomArray &r_,
                   const AtomArray &v_, double dt_, double *lambda_, bool virial_, bool report_, bool check_)
         : r_ref(r_ref_), r(r_), v(v_), box_ref(box_ref_), box(chains.box), rate(chains.box_rate()), dt(dt_),
           lambda(lambda_), tolerance(chains.tolerance), most_iterations(chains.max_iterations), virial(virial_),

@@ -14,12 +14,12 @@ std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 struct ReactionsWork final : Work {
     AtomArray r;
-    const Box &box;
+    const Cell &box;
     const double *lambda;
     Reactions out;
     bool in_order;
 
-    ReactionsWork(const Chains &chains, const AtomArray &r_, const Box &box_, const double *lambda_,
+    ReactionsWork(const Chains &chains, const AtomArray &r_, const Cell &box_, const double *lambda_,
                   const Reactions &out_)
         : r(r_), box(box_), lambda(lambda_), out(out_), in_order(out.g.x && !chains.bodies()->fixed_atoms().empty()) {}
     bool is_in_order() const override { return in_order; }
@@ -63,7 +63,7 @@ struct ReactionsWork final : Work {
 
 }  // namespace
 
-void reactions(const Chains &chains, const AtomArray &r, const Box &box, const double *lambda, const Reactions &out,
+void reactions(const Chains &chains, const AtomArray &r, const Cell &box, const double *lambda, const Reactions &out,
                double *virial) {
     const Found found = run(chains, ReactionsWork(chains, r, box, lambda, out));
     if (found.tally.n_bad > 0) {

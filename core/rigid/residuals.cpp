@@ -11,24 +11,30 @@ namespace {
 
 struct ResidualsWork final : Work {
     AtomArray r, v;
-    const Box &box;
+    const Cell &box;
     const BoxRate *box_rate;
     double *length, *rate;
 
     ResidualsWork(const Chains &chains, const AtomArray &r_, const AtomArray &v_, double *length_, double *rate_)
         : r(r_), v(v_), box(chains.box), box_rate(chains.box_rate()), length(length_), rate(rate_) {}
 
+    void place_bond(const Shape &shape, const Place &place, std::size_t k, const double (&x)[2][3], double *d) const {
+        if (!shape.has_images || box.shape == Box::none) return holonomic::bond_vector(box, x[0], x[1], d);
+        const Vector3<double> image = rounded(told_image(box, place, k));
+        d[0] = x[1][0] - x[0][0] + image.x, d[1] = x[1][1] - x[0][1] + image.y, d[2] = x[1][2] - x[0][2] + image.z;
+    }
     struct Residual {
         double length, rate;
     };
-    Residual residual_of(const Bond &bond, const std::int64_t *atoms) const {
+    Residual residual_of(const Shape &shape, const Place &place, std::size_t k) const {
+        const Bond &bond = shape.bonds[k];
         double x[2][3], u[2][3] = {}, d[3], dd = 0, du = 0;
         const std::int32_t ends[2] = {bond.i, bond.j};
         for (int end = 0; end < 2; ++end) {
-            read_atom(r, atoms[ends[end]], x[end]);
-            if (v.x) read_atom(v, atoms[ends[end]], u[end]);
+            read_atom(r, place.atoms[ends[end]], x[end]);
+            if (v.x) read_atom(v, place.atoms[ends[end]], u[end]);
         }
-        holonomic::bond_vector(box, x[0], x[1], d);
+        place_bond(shape, place, k, x, d);
         for (int c = 0; c < 3; ++c) {
             dd += d[c] * d[c];
             du += d[c] * (u[1][c] - u[0][c]);
@@ -38,13 +44,13 @@ struct ResidualsWork final : Work {
     }
 
     Outcome molecule(const System &system, const Place &place, Tally &) const override {
-        const std::vector<Bond> &bonds = system.shape().bonds;
-        for (const Bond &bond : bonds) {
-            const Residual left = residual_of(bond, place.atoms);
+        const Shape &shape = system.shape();
+        for (std::size_t k = 0; k < shape.bonds.size(); ++k) {
+            const Residual left = residual_of(shape, place, k);
             if (!std::isfinite(left.length) || !std::isfinite(left.rate)) return Outcome::not_finite;
         }
-        for (std::size_t k = 0; k < bonds.size(); ++k) {
-            const Residual left = residual_of(bonds[k], place.atoms);
+        for (std::size_t k = 0; k < shape.bonds.size(); ++k) {
+            const Residual left = residual_of(shape, place, k);
             if (length) length[place.bonds[k]] = left.length;
             if (rate) rate[place.bonds[k]] = left.rate;
         }

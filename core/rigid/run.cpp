@@ -56,7 +56,9 @@ public:
     }
 
 private:
-    Place place(std::int64_t m) const { return {bodies_.atoms(m), bodies_.bonds(m), chains_.n_chains() + m}; }
+    Place place(std::int64_t m) const {
+        return {bodies_.atoms(m), bodies_.bonds(m), chains_.n_chains() + m, chains_.images()};
+    }
 
     OutcomeOf *outcome_of(std::int64_t m) const { return outcomes_ ? outcomes_ + chains_.n_chains() + m : nullptr; }
 

@@ -118,7 +118,7 @@ private:
                 continue;
             }
             add_distance(bond, static_cast<std::int32_t>(k));
-            s_.longest = std::max(s_.longest, bond.length);
+            if (!s_.has_images) s_.longest = std::max(s_.longest, bond.length);
         }
         for (const Bond &bond : s_.hidden) add_distance(bond, -1);
         for (const Part &part : s_.parts) {
@@ -295,7 +295,8 @@ void complete(Shape &shape, const std::vector<Body> &bodies) {
         shape.is_ordinary && shape.parts.size() == 1 && shape.n_atoms == shape.n_held &&
         std::all_of(shape.bonds.begin(), shape.bonds.end(), [](const Bond &bond) { return bond.row < 0; }) &&
         bodies[static_cast<std::size_t>(shape.parts[0].body)].is_thick;
-    // A rigid whole has three or six motions left unless a fixed atom holds it: more equations than freedoms depend.
+    // A rigid whole has three or six motions left unless a fixed atom holds it, one that goes round the box three: more
+    // equations than freedoms depend.
     std::int64_t freedoms = 3 * (shape.n_movable - shape.n_held), rows = 0;
     for (const Part &part : shape.parts) {
         const Body &body = bodies[static_cast<std::size_t>(part.body)];
@@ -304,7 +305,8 @@ void complete(Shape &shape, const std::vector<Body> &bodies) {
     for (const Bond &bond : shape.bonds) rows += bond.row >= 0;
     rows += static_cast<std::int64_t>(shape.hidden.size());
     const bool free = shape.n_atoms == shape.n_movable;
-    if (rows > 0 && rows > freedoms - (free ? 5 : 0)) throw Unsolvable{Unsolvable::too_many, -1};
+    if (rows > 0 && rows > freedoms - (!free ? 0 : shape.has_images ? 3 : 5))
+        throw Unsolvable{Unsolvable::too_many, -1};
 }
 
 std::int64_t Shape::bytes() const {

@@ -62,6 +62,7 @@ struct Shape {
     std::vector<Step> links;    // between which nearest images are taken where no bond is
     std::vector<Step> steps;    // the way through the molecule, from its first atom
     bool by_lengths = false;    // bonds within bodies have multipliers (within.hpp)
+    bool has_images = false;    // of bonds, which are told and not looked for
     bool is_lone_body = false;  // one that plain doubles do for, without bonds but within it
     bool is_ordinary = false;   // no product of its masses and lengths overflows or underflows; else it is refused
     double longest = 0;         // of what is taken as a nearest image

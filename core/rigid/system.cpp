@@ -95,6 +95,17 @@ Layout lay_out(const Shape &s, char *memory) {
 
 }  // namespace
 
+PairVector told_image(const Cell &box, const Place &place, std::size_t bond) {
+    PairVector d = zero();
+    for (int i = 0; i < 3; ++i) {
+        const double n = place.images[3 * place.bonds[bond] + i];
+        d.x = d.x + n * as_pair(box.given[3 * i]);
+        d.y = d.y + n * as_pair(box.given[3 * i + 1]);
+        d.z = d.z + n * as_pair(box.given[3 * i + 2]);
+    }
+    return d;
+}
+
 std::int64_t System::bytes(const Shape &shape) {
     alignas(64) static char nowhere[64];
     return lay_out(shape, nowhere).bytes;
@@ -122,12 +133,14 @@ System::System(const Shape &shape, const Body *bodies, char *memory) : s_(shape)
     path_ = m.path;
 }
 
-void System::read(const AtomArray &r, const Box &box, const Place &place, const Conformation &to) const {
+void System::read(const AtomArray &r, const Cell &box, const Place &place, const Conformation &to) const {
     for (std::int32_t i = 0; i < s_.n_atoms; ++i) read_atom(r, place.atoms[i], raw + 3 * i);
     // A first atom that is not finite makes all of them so.
     to.x[0] = difference(raw, raw);
-    for (const Step &step : s_.steps)
-        to.x[step.atom] = to.x[step.before] + image(box, difference(raw + 3 * step.atom, raw + 3 * step.before));
+    for (const Step &step : s_.steps) {
+        const PairVector d = difference(raw + 3 * step.atom, raw + 3 * step.before);
+        to.x[step.atom] = to.x[step.before] + (s_.has_images ? d : image(box, d));
+    }
     for (const Part &part : s_.parts) {
         const Body &its = body(part);
         PairVector *const q = to.q + part.first_node;
@@ -142,6 +155,10 @@ void System::read(const AtomArray &r, const Box &box, const Place &place, const 
         const Bond &bond = s_.bonds[k];
         to.shift[k] = zero();
         if (box.shape == Box::none || bond.row < 0) continue;
+        if (s_.has_images) {
+            to.shift[k] = told_image(box, place, k);
+            continue;
+        }
         const PairVector nearest = image(box, difference(raw + 3 * bond.j, raw + 3 * bond.i));
         const PairVector other = nearest - (to.x[bond.j] - to.x[bond.i]);
         if (largest(other) > 1e-6 * bond.length) to.shift[k] = other;

@@ -6,6 +6,7 @@
 // the precision, too.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "core/caller/box.hpp"
@@ -20,7 +21,8 @@ enum class Outcome { good, not_finite, degenerate, no_convergence, stretched };
 struct Place {
     const std::int64_t *atoms;
     const std::int64_t *bonds;
-    std::int64_t number;  // of the molecule
+    std::int64_t number;         // of the molecule
+    const std::int32_t *images;  // [..][3] of the bonds in the arrays per bond, where they are told
 };
 
 // Where a molecule is at an instant.
@@ -31,6 +33,9 @@ struct Conformation {
     PairVector *gradient;  // [entries]
 };
 
+// The lattice vector that is told of a bond.
+PairVector told_image(const Cell &box, const Place &place, std::size_t bond);
+
 class System {
 public:
     static std::int64_t bytes(const Shape &shape);
@@ -38,7 +43,7 @@ public:
     System(const Shape &shape, const Body *bodies, char *memory);
 
     // Nodes and gradients.
-    void read(const AtomArray &r, const Box &box, const Place &place, const Conformation &to) const;
+    void read(const AtomArray &r, const Cell &box, const Place &place, const Conformation &to) const;
     void differentiate(const Conformation &at) const;
     // Nodes of a vector per atom, by masses: velocities. What sites have is not looked at.
     void velocities(const AtomArray &v, const Place &place, PairVector *nodes) const;

@@ -14,7 +14,7 @@ std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 struct VelocitiesWork final : Work {
     AtomArray r, v;
-    const Box &box;
+    const Cell &box;
     const BoxRate *rate;
     double *lambda;
     bool virial;

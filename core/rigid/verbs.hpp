@@ -20,13 +20,13 @@ void project_positions(const Chains &chains, const AtomArray &r_ref, const AtomA
 // Crude positions, in the box, onto the constraints, without checks.
 void impose(const Chains &chains, const AtomArray &r, Report *report);
 
-void reactions(const Chains &chains, const AtomArray &r, const Box &box, const double *lambda, const Reactions &out,
+void reactions(const Chains &chains, const AtomArray &r, const Cell &box, const double *lambda, const Reactions &out,
                double *virial);
 
 // Throws Error of Status::lengths if a reference does not fit, or a trial is stretched beyond reason.
-void check_reference(const Chains &chains, const AtomArray &r, const Box &box, const char *what);
+void check_reference(const Chains &chains, const AtomArray &r, const Cell &box, const char *what);
 // The largest |d.d - a^2| / a^2 of bonds and of the bodies' own distances, where it is larger than what is there.
-void worst_length(const Chains &chains, const AtomArray &r, const Box &box, WorstLength *worst);
+void worst_length(const Chains &chains, const AtomArray &r, const Cell &box, WorstLength *worst);
 // Of bonds alone.
 void residuals(const Chains &chains, const AtomArray &r, const AtomArray &v, double *length, double *rate);
 void violation(const Chains &chains, const AtomArray &r, const AtomArray &v, Worst *worst);

@@ -59,11 +59,11 @@ public:
 
     // Calls each(system, place) for the active molecules, positions read.
     template <class Each>
-    void for_each(const AtomArray &r, const Box &box, const Each &each) const {
+    void for_each(const AtomArray &r, const Cell &box, const Each &each) const {
         for (std::int64_t m = 0; m < bodies_.n_molecules(); ++m) {
             if (!bodies_.is_active(m)) continue;
             const System system(bodies_.shape(m), bodies_.kinds(), memory_);
-            const Place place{bodies_.atoms(m), bodies_.bonds(m), chains_.n_chains() + m};
+            const Place place{bodies_.atoms(m), bodies_.bonds(m), chains_.n_chains() + m, chains_.images()};
             system.read(r, box, place, system.now);
             each(system, place);
         }
@@ -141,7 +141,7 @@ Error another_box(const Chains &chains, std::int64_t molecule, double off, doubl
 
 }  // namespace
 
-void check_reference(const Chains &chains, const AtomArray &r, const Box &box, const char *what) {
+void check_reference(const Chains &chains, const AtomArray &r, const Cell &box, const char *what) {
     Worst1 worst, cut, inside;
     std::int64_t n_inside = 0;
     Measure(chains).for_each(r, box, [&](const System &system, const Place &place) {
@@ -185,7 +185,7 @@ void check_reference(const Chains &chains, const AtomArray &r, const Box &box, c
     throw error;
 }
 
-void worst_length(const Chains &chains, const AtomArray &r, const Box &box, WorstLength *worst) {
+void worst_length(const Chains &chains, const AtomArray &r, const Cell &box, WorstLength *worst) {
     Worst1 found;
     Measure(chains).for_each(r, box, [&](const System &system, const Place &place) {
         Measure::lengths(system, place, [&](double error, std::int64_t bond, std::int64_t) {

@@ -1,4 +1,5 @@
-/* Two rigid CO2 (116 pm, straight) in one call, and a rod that hangs at a fixed atom by a bond. */
+/* Two rigid CO2 (116 pm, straight) in one call, a rod that hangs at a fixed atom by a bond, and the mass points of a
+ * body that is given by its inertia tensor. */
 #include "check.h"
 
 int main(void)
@@ -21,5 +22,13 @@ int main(void)
     shows("force on the carbon", g[1][2], 12 * 3.0 / 44); /* its mass times what the centre is accelerated by */
     shows("tension", tension, 5);
     hol_chains_destroy(chains);
+
+    const double inertia[9] = {2, 0, 0, 0, 3, 0, 0, 0, 4}; /* moments; products with the minus sign beside them */
+    double masses[4], places[4][3], moment = 0;
+    int64_t n_points;
+    ok(hol_equimomental_points(8, NULL, inertia, &n_points, masses, places[0]));
+    shows("mass points", (double)n_points, 4);
+    for (int a = 0; a < 4; ++a) moment += masses[a] * (places[a][0] * places[a][0] + places[a][1] * places[a][1]);
+    shows("moment of inertia about z", moment, 4);
     return 0;
 }

@@ -16,6 +16,7 @@ from ._queries import Molecule
 from .errors import (ArgumentError, DegenerateError, Error, LengthsError, LengthsWarning, MasslessWarning,
                      NoConvergenceError, NotDefiniteError, NotFiniteError, NumberError, OutOfMemoryError, ReferenceWarning,
                      SharedAtomError, StateError, UnsupportedError)
+from .equimomental import equimomental_points
 from .factors import Factors
 from .inverse import Inverse
 from .molecules import Molecules
@@ -28,5 +29,6 @@ __all__ = [
     "LengthsWarning", "MasslessWarning", "Metric", "Molecule", "Molecules", "NoConvergenceError", "NotDefiniteError",
     "NotFiniteError", "NumberError", "OutOfMemoryError", "Outcomes", "PartitionFunction", "Reactions",
     "ReferenceWarning", "Report", "SharedAtomError",
-    "StateError", "UnsupportedError", "Violation", "instruction_set", "partition_function", "tridiagonal", "version",
+    "StateError", "UnsupportedError", "Violation", "equimomental_points", "instruction_set", "partition_function",
+    "tridiagonal", "version",
 ]

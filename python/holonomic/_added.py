@@ -14,7 +14,7 @@ def _repeated(bonds: np.ndarray, n_molecules: int, n_atoms: int, first_atom: int
 
 # The bonds and their lengths of each method of Molecules that adds some, from its arguments.
 _BONDS: Dict[str, Callable[..., Tuple[np.ndarray, np.ndarray]]] = {
-    "add": lambda bonds, lengths: (bonds, lengths),
+    "add": lambda bonds, lengths, images=None: (bonds, lengths),
     "add_molecules": lambda n, n_atoms, bonds, lengths, first: (_repeated(bonds, n, n_atoms, first), np.tile(lengths, n)),
     "add_chain": lambda atoms, lengths: (np.stack([atoms[:-1], atoms[1:]], axis=1), lengths),
     "add_chains": lambda n, n_bonds, lengths, first: (

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import warnings
 from typing import Any, List, Optional
 
@@ -21,7 +22,7 @@ class MoleculesOfAtoms:
     def __init__(self, kept: Kept, masses: np.ndarray, held: np.ndarray):
         self.kept, self.masses, self.held = kept, masses, held
         self._cell: Optional[np.ndarray] = None
-        self._narrow = False
+        self._narrow, self._half = False, np.inf
         self._order: Optional[tuple] = None
         self.longest = max([0.0, *kept.lengths, *(_extent(place) for place in kept.places)])
         is_held = np.zeros(len(masses), dtype=bool)
@@ -66,7 +67,7 @@ class MoleculesOfAtoms:
         if self.moving is None or self.equal is None or self._cell is not None and np.array_equal(cell, self._cell):
             return
         steepest = np.linalg.norm(np.linalg.pinv(cell), axis=0).max()  # one over the least distance of two faces
-        self._narrow = bool(2.0001 * self.longest * steepest > 1)
+        self._narrow, self._half = bool(2.0001 * self.longest * steepest > 1), 0.5 / steepest if steepest > 0 else np.inf
         for molecules in (self.moving, self.equal):
             molecules.box = None if self._narrow or not cell.any() else cell
         self._cell = cell
@@ -77,24 +78,38 @@ class MoleculesOfAtoms:
             return atoms.positions
         if self._order is None:
             self._order = self._tree(len(atoms))
-        r, (of, levels) = atoms.positions.copy(), self._order
+        r, (of, length, levels) = atoms.positions.copy(), self._order
         for level in levels:
-            r[level] = r[of[level]] + find_mic(atoms.positions[level] - atoms.positions[of[level]], atoms.cell, atoms.pbc)[0]
+            r[level] = r[of[level]] + self._images(atoms, atoms.positions[level] - atoms.positions[of[level]], length[level])
         pairs = self.kept.pairs
         if len(pairs):
             d = r[pairs[:, 1]] - r[pairs[:, 0]]
-            open_ = np.abs(np.linalg.norm(d, axis=1) - find_mic(d, atoms.cell, atoms.pbc)[1]) > 1e-6 * self.longest
+            bonded = np.linalg.norm(self._images(atoms, d, self.kept.lengths), axis=1)
+            open_ = np.abs(np.linalg.norm(d, axis=1) - bonded) > 1e-6 * self.longest
             if open_.any():
                 i, j = pairs[open_][0]
                 raise ArgumentError(f"a bond is longer than half the cell, and the bond of atoms {i} and {j} closes a ring through "
                                     "its faces: which images are bonded can't be told")
         return r
 
+    def _images(self, atoms: Any, d: np.ndarray, lengths: np.ndarray) -> np.ndarray:
+        """Nearest images; of bonds longer than half the cell those that come nearest to their lengths."""
+        d = find_mic(d, atoms.cell, atoms.pbc)[0]
+        long = np.flatnonzero(lengths > self._half)
+        if len(long):
+            cells = np.array(list(itertools.product(*[(0, -1, 1) if periodic else (0,) for periodic in atoms.pbc])))
+            every = d[long, None] + cells @ atoms.cell.array
+            off = np.abs(np.linalg.norm(every, axis=2) - lengths[long, None])
+            d[long] = every[np.arange(len(long)), off.argmin(axis=1)]
+        return d
+
     def _tree(self, n: int) -> tuple:
-        """Each atom hangs on another one that comes before it: the levels, and on which."""
+        """Each atom hangs on another one that comes before it: on which, at what distance, and the levels."""
         joined = [self.kept.pairs] + [np.stack([np.full(len(body) - 1, body[0]), body[1:]], axis=1) for body in self.kept.bodies]
         i, j = np.concatenate(joined).T
         graph = coo_matrix((np.ones(len(i)), (i, j)), shape=(n, n)).tocsr()
+        apart = [self.kept.lengths] + [np.linalg.norm(place[1:] - place[0], axis=1) for place in self.kept.places]
+        between = {frozenset(pair): length for pair, length in zip(zip(i.tolist(), j.tolist()), np.concatenate(apart))}
         of, depth = np.full(n, -1), np.full(n, -1)
         for root in np.unique(i):
             if depth[root] >= 0:
@@ -103,7 +118,8 @@ class MoleculesOfAtoms:
             of[order], depth[root] = before[order], 0
             for atom in order[1:]:
                 depth[atom] = depth[of[atom]] + 1
-        return of, [np.flatnonzero(depth == level) for level in range(1, depth.max() + 1)]
+        length = np.array([between.get(frozenset((atom, of[atom])), 0.0) for atom in range(n)])
+        return of, length, [np.flatnonzero(depth == level) for level in range(1, depth.max() + 1)]
 
     def look(self, atoms: Any, measured: bool) -> None:
         """At first use: warns of what is likely a mistake."""

@@ -109,11 +109,13 @@ class Bonds:
         self._grown()
 
     # ------------------------------------------------------------------------------------------------------- adding
-    def add(self, bonds: Pairs, lengths: Floats) -> None:
+    def add(self, bonds: Pairs, lengths: Floats, images: Optional[Integers] = None) -> None:
         """Adds rigid bonds of any molecules, in any order.
 
         bonds    (n, 2) integers, the two atoms of each bond, counted from 0
         lengths  (n,) lengths, or one number for all
+        images   (n, 3) integers, by how many cell vectors the second atom of each bond is moved: its vector is
+                 r[j] - r[i] + image @ box, and may be longer than half the box. None: nearest images
 
         The library finds the molecules that they form. All bonds of a molecule are given in one call; an atom of mass 0 may
         occur in any number of calls. Arrays per bond have the bonds in the order in which they were given.
@@ -123,9 +125,33 @@ class Bonds:
         if len(bonds) == 0:
             return
         self._refuse_massless(bonds)
-        ask_to_add(library.hol_chains_add_bonds(self._handle, len(bonds), address(bonds), address(lengths)))
-        self._noted("add", bonds, lengths)
+        if images is None:
+            ask_to_add(library.hol_chains_add_bonds(self._handle, len(bonds), address(bonds), address(lengths)))
+        else:
+            images = self._images_of(images, len(bonds))
+            ask_to_add(library.hol_chains_add_bonds_with_images(self._handle, len(bonds), address(bonds), address(lengths),
+                                                                address(images)))
+        self._noted("add", bonds, lengths, images)
         self._warn_of_massless(bonds)
+
+    @staticmethod
+    def _images_of(images: Integers, n_bonds: int) -> np.ndarray:
+        images = integers(images, "images")
+        if images.shape != (n_bonds, 3):
+            raise ArgumentError(f"images has the shape {images.shape}; it must be ({n_bonds}, 3), for {n_bonds} bonds")
+        return images
+
+    @property
+    def images(self) -> np.ndarray:
+        """Images of the bonds (n_bonds, 3) as they were told, in cell vectors; 0 of bonds that were added without. Set them
+        where atoms are moved by cell vectors between two calls."""
+        found = np.zeros((self._n_bonds, 3), np.int64)
+        ask(library.hol_chains_images(self._handle, address(found)))
+        return found
+
+    @images.setter
+    def images(self, images: Integers) -> None:
+        ask(library.hol_chains_set_images(self._handle, address(self._images_of(images, self._n_bonds))))
 
     def add_molecules(self, n_molecules: int, n_atoms: int, bonds: Pairs, lengths: Floats, first_atom: int = 0) -> None:
         """Adds the same bonds for n_molecules molecules of n_atoms consecutive atoms each.

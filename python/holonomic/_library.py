@@ -114,6 +114,10 @@ SIGNATURES = {
     "hol_tridiagonal_inverse_entry": "i lpllp",
     "hol_tridiagonal_inverse_band": "i lplp",
     "hol_partition_function": "i lpppp",
+    "hol_equimomental_points": "i dppppp",
+    "hol_chains_add_bonds_with_images": "i plppp",
+    "hol_chains_set_images": "i pp",
+    "hol_chains_images": "i pp",
 }
 _TYPES = {"p": c_void_p, "i": c_int, "l": c_int64, "d": c_double, "s": ctypes.c_char_p, "-": None}
 

@@ -52,7 +52,7 @@ class Settings(Queries):
     def _settings(self) -> dict:
         """All of them, in an order in which they can be set."""
         names = ("box", "reference_box", "box_rate", "threads", "tolerance", "max_iterations", "length_tolerance",
-                 "memory_limit", "checks", "keep_outcomes", "find_bodies", "active")
+                 "memory_limit", "checks", "keep_outcomes", "find_bodies", "active", "images")
         return {name: getattr(self, name) for name in names}
 
     @_ArraySetting

@@ -325,6 +325,20 @@ static void bodies(void)
     NEAR(g[3], 1);
     NEAR(tension, 7);
     hol_chains_destroy(rods);
+    const int64_t image[3] = {0, 0, 1};
+    int64_t told[3];
+    SUCCEEDS(hol_chains_create(2, masses, &rods));
+    SUCCEEDS(hol_chains_add_bonds_with_images(rods, 1, within, &one, image));
+    SUCCEEDS(hol_chains_set_images(rods, image));
+    SUCCEEDS(hol_chains_images(rods, told));
+    EXPECT(told[0] == 0 && told[2] == 1);
+    hol_chains_destroy(rods);
+    const double inertia[9] = {0, 0, 0, 0, 2, 0, 0, 0, 2};
+    double masses_of_points[4], places[12];
+    int64_t n_points;
+    SUCCEEDS(hol_equimomental_points(2, NULL, inertia, &n_points, masses_of_points, places));
+    EXPECT(n_points == 2);
+    NEAR(fabs(places[0]), 1);
 }
 
 /* A rigid triangle and three beads on one, all of mass 1, pulled apart. */

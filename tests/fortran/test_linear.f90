@@ -1,12 +1,13 @@
-! Linear relations through the module: a site of flexible atoms, atoms that are one point; errors name the procedure.
+! Linear relations, and bonds whose images are told, through the module: a site of flexible atoms, atoms that are one point; errors name the procedure.
 program test_linear
-   use, intrinsic :: iso_fortran_env, only: int64, real64
+   use, intrinsic :: iso_fortran_env, only: int64, real32, real64
    use checks, only: check, eps, finish, test
    use holonomic
    implicit none
 
    call a_site_of_flexible_atoms()
    call mistakes_are_named()
+   call images_are_told()
    call finish()
 
 contains
@@ -55,6 +56,32 @@ contains
       call check(stat == HOL_ERR_VALUE .and. index(message, "1 coefficients were given") > 0, trim(message))
       call chains%add_linear([1, 2], [1.0_real64, -1.0_real64], bonds=reshape([1, 2], [2, 1]), stat=stat, errmsg=message)
       call check(stat == HOL_ERR_VALUE .and. index(message, "together") > 0, trim(message))
+      call chains%destroy()
+   end subroutine
+
+   ! A bond of 7 in a box of 11, whose second atom is one box vector further on.
+   subroutine images_are_told()
+      type(hol_chains) :: chains
+      real(real64) :: r(3, 2), f(3, 2), tension(1)
+      integer :: found(3, 1), stat
+      integer(int64) :: wide(3, 1)
+      character(200) :: message
+      call test("bonds whose images are told")
+      r = reshape([9, 5, 5, 5, 5, 5], [3, 2])
+      f = reshape([-2, 0, 0, 2, 0, 0], [3, 2])
+      call chains%create([1.0_real64, 1.0_real64])
+      call chains%set_box([11.0_real64, 11.0_real64, 11.0_real64])
+      call chains%add_with_images(reshape([1, 2], [2, 1]), [7.0_real32], reshape([1, 0, 0], [3, 1]))
+      call chains%forces(r, f=f, tension=tension)
+      call check(abs(tension(1) - 2) <= 16*eps, "its tension")
+      wide(:, 1) = [0, 0, 0]
+      call chains%set_images(wide)
+      r(1, 2) = 16
+      call chains%forces(r, f=f, tension=tension)
+      call chains%images(found)
+      call check(abs(tension(1) - 2) <= 16*eps .and. all(found == 0), "where the atom has been moved")
+      call chains%set_images(reshape([1, 0], [2, 1]), stat=stat, errmsg=message)
+      call check(stat == HOL_ERR_VALUE .and. index(message, "images must be (3, 1)") > 0, trim(message))
       call chains%destroy()
    end subroutine
 

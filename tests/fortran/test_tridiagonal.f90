@@ -1,4 +1,4 @@
-! Tridiagonal algebra and partition functions: closed forms, and what happens to wrong arguments.
+! Tridiagonal algebra, partition functions and mass points: closed forms, and what happens to wrong arguments.
 program test_tridiagonal
    use, intrinsic :: iso_fortran_env, only: real64
    use checks, only: check, eps, finish, same_bits, test
@@ -8,6 +8,7 @@ program test_tridiagonal
    call straight_chain_in_closed_form()
    call tridiagonal_refuses()
    call partition_functions()
+   call mass_points()
    call finish()
 
 contains
@@ -85,6 +86,25 @@ contains
       call hol_partition_function(3, stat=stat)
       call check(stat == HOL_ERR_NULL, "nothing asked")
       call check(same_bits(again, -7.0_real64), "nothing was written")
+   end subroutine
+
+   ! A rod of moment 2 and mass 2: two points of mass 1 at a distance of 1 from the centre.
+   subroutine mass_points()
+      real(real64) :: inertia(3, 3), masses(4), places(3, 4)
+      integer :: n, stat
+      character(200) :: message
+      call test("mass points of an inertia tensor")
+      inertia = 0
+      inertia(2, 2) = 2
+      inertia(3, 3) = 2
+      masses = -7
+      call hol_equimomental_points(2.0_real64, inertia, n, masses, places, centre=[5.0_real64, 6.0_real64, 7.0_real64])
+      call check(n == 2 .and. all(abs(masses(:2) - 1) <= eps) .and. same_bits(masses(3), -7.0_real64), "two points")
+      call check(abs(abs(places(1, 1) - 5) - 1) <= 8*eps .and. abs(places(1, 1) + places(1, 2) - 10) <= 16*eps .and. &
+                 all(abs(places(2, :2) - 6) <= 8*eps), "on the axis, about the centre")
+      inertia(2, 2) = 1
+      call hol_equimomental_points(2.0_real64, inertia, n, masses, places, stat=stat, errmsg=message)
+      call check(stat == HOL_ERR_VALUE .and. n == 0 .and. index(message, "sum of the others") > 0, "no such body")
    end subroutine
 
 end program

@@ -96,6 +96,17 @@ class Dynamics(unittest.TestCase):
         self.assertLess(abs(np.mean(temperatures) - 300), 25)
         np.testing.assert_allclose(lengths_of(atoms, pairs), 1.1, atol=1e-12)
 
+    def test_a_bond_longer_than_half_the_cell(self):
+        """A reaction coordinate: its length says which image is meant, wherever the atoms are put in the cell."""
+        for shift in (0, 7.22):
+            atoms = Atoms("HO", positions=[[0.3, 1, 1], [4.13 - shift, 1, 1]], cell=[7.22] * 3, pbc=True)
+            atoms.set_constraint(Constraint([(0, 1)], 3.8295))
+            new = atoms.positions + [[0.03, 0.2, 0], [0, 0, 0.1]]
+            atoms.set_positions(new)
+            d = atoms.positions[1] - atoms.positions[0] + [shift, 0, 0]
+            self.assertLess(abs(np.linalg.norm(d) - 3.8295), 1e-13)
+            self.assertLess(np.abs(atoms.positions - new).max(), 0.05)
+
     def test_wrapped_molecules_in_a_cell(self):
         ends = []
         for wrap in (False, True):

@@ -88,6 +88,25 @@ class Bodies(unittest.TestCase):
         for i, j in pairs:
             self.assertAlmostEqual(np.linalg.norm(r[i] - r[j]), np.linalg.norm(places[i] - places[j]), places=13)
 
+    def test_a_body_by_its_inertia_moves_as_eulers_equations_say(self):
+        moments, mass = np.array([2.0, 3.0, 4.5]), 5.0
+        masses, places = hol.equimomental_points(mass, moments, centre=[1.0, 2.0, 3.0])
+        x = places - [1, 2, 3]
+        self.assertEqual(masses.tolist(), [1.25] * 4)
+        self.assertLess(np.abs(np.einsum("a,ai,aj->ij", masses, x, x) - np.diag([2.75, 1.75, 0.25])).max(), 1e-14)
+        site, omega, f = np.array([0.3, -0.4, 0.5]), np.array([0.2, 0.7, -0.1]), np.array([1.0, 2.0, -1.5])
+        molecules = hol.Molecules([*masses, 0.0])
+        r = np.vstack([x, site])
+        molecules.add_rigid([range(5)], [r])
+        forces = np.zeros((5, 3))
+        forces[4] = f
+        total = forces + molecules.forces(r, np.cross(omega, r), forces).forces
+        alpha = (np.cross(site, f) - np.cross(omega, moments * omega)) / moments
+        a = f / mass + np.cross(alpha, x) + np.cross(omega, np.cross(omega, x))
+        self.assertLess(np.abs(total[:4] / masses[:, None] - a).max(), 1e-13)
+        with self.assertRaisesRegex(hol.ArgumentError, "sum of the others"):
+            hol.equimomental_points(1, [1, 2, 4])
+
     def test_wrong_arguments(self):
         molecules = hol.Molecules(np.ones(4))
         for bodies, places in (([], []), ([[0, 1]], []), ([[0, 1]], [[(0, 0, 0)]]), ([[0, 0]], [[(0, 0, 0), (1, 0, 0)]])):
