@@ -336,10 +336,10 @@ HOL_API int hol_chains_add_rigid_molecules(hol_chains *chains, int64_t n_molecul
  * @param[out] masses    [4], of which n_points are written: mass / n_points each
  * @param[out] places    [4][3], likewise (Fortran: (3, 4))
  *
- * Moments are those of the tensor to rounding. Where the largest is above the sum of the others by no more than 1e-5 of it,
- * as digits of a file may leave it, the body is flat, or linear.
- * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE: the mass; numbers that are not finite; a tensor that is not symmetric, is
- *         0, has a negative moment, or one above the sum of the others, which no distribution of mass has. On an error
+ * Moments are those of the tensor to rounding. Where the largest is above the sum of the others by no more than 1e-5 of
+ * it, as digits of a file may leave it, the body is flat, or linear.
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE: the mass; numbers that are not finite; a tensor that is not symmetric,
+ * is 0, has a negative moment, or one above the sum of the others, which no distribution of mass has. On an error
  *         nothing is written. Thread-safe. Since 0.3.
  */
 HOL_API int hol_equimomental_points(double mass, const double *centre, const double *inertia, int64_t *n_points,
