@@ -32,7 +32,7 @@ make_machine() {
             ;;
     esac
     echo "making $suite"
-    mmdebstrap --variant=minbase --include=ca-certificates "$suite" "$root" "$mirror" </dev/null >"$root.log" 2>&1 ||
+    mmdebstrap --variant=minbase --include=apt,ca-certificates "$suite" "$root" "$mirror" </dev/null >"$root.log" 2>&1 ||
         { tail -n 5 "$root.log"; leave_out "$suite can't be had"; }
     # apt reaches its sources as it does outside.
     cp /etc/resolv.conf "$root/etc/" 2>/dev/null || :
