@@ -63,7 +63,7 @@ void draw_tree(hostile_molecule &m, molecule_dice &d)
     add_atom(m, {0, 0, 0});
     while (static_cast<std::int64_t>(m.pairs.size()) < 2 * n) {
         const std::int64_t parent = star ? 0 : choose_parent(d, style, m.n_atoms());
-        if (bonds[at(parent)] >= valence) continue;
+        if (!star && bonds[at(parent)] >= valence) continue;
         point u = d.direction();
         if (d.chance(aligned)) {
             u = d.turned(along[at(parent)], d.chance(0.2) ? 0 : d.decades(-12, 0));
