@@ -117,8 +117,8 @@ bool is_float(double x) { return static_cast<double>(static_cast<float>(x)) == x
 // The least number of decimals that all values have, to a few roundings of doubles, or of floats that became doubles;
 // -1 if more than `most`, or if so many decimals are all that a number of this size has: what is as near by chance is
 // not rounded.
-int decimals_of(const std::vector<double> &values, int most, bool of_squares) {
-    constexpr double likely = 3e-4, of_float = 0.51 * std::numeric_limits<float>::epsilon();
+int decimals_of(const std::vector<double> &values, int most, bool of_squares, double likely = 3e-4) {
+    constexpr double of_float = 0.51 * std::numeric_limits<float>::epsilon();
     double scale = 1;
     for (int p = 0; p <= most; ++p, scale *= 10) {
         double chance = 1;
@@ -144,9 +144,10 @@ struct Roundings {
     std::ptrdiff_t count = 0;
 };
 Roundings roundings_of(const std::vector<double> &values) {
+    constexpr double likely = 1e-8;  // of one value: there are many lengths in a set
     Roundings found;
     for (const double value : values) {
-        const int p = decimals_of({value}, 9, false);
+        const int p = decimals_of({value}, 9, false, likely);
         const double rounded = p >= few_decimals          ? std::pow(10.0, -p)
                                : p < 0 && is_float(value) ? std::numeric_limits<float>::epsilon() * value
                                                           : 0;
@@ -240,7 +241,9 @@ Decimals::Decimals(const Distances &wanted, double tolerance)
     const bool may_be_places = of_lengths < 0 && 2 * singles.count < static_cast<std::ptrdiff_t>(values.size());
     int of_places = may_be_places ? decimals_of(values, 6, true) : -1;
     if (of_places >= 0 && wanted.n < 5 && are_flat_on_grid(wanted, of_places)) of_places = -1;
-    const double of_single = of_places < 0 ? singles.coarsest : 0;
+    // One rounded length says nothing of a distance that is given in full: an angle of nearly 180 degrees is one.
+    const bool most_are = 2 * singles.count > static_cast<std::ptrdiff_t>(values.size());
+    const double of_single = of_places < 0 && most_are ? singles.coarsest : 0;
     if (of_lengths >= 0) open_ = std::max(open_, std::pow(10.0, -std::max(of_lengths, few_decimals)) / least);
     if (of_places >= 0)
         open_ = std::max(open_, 2 * std::pow(10.0, -2 * std::max(of_places, few_decimals)) / (least * least));
