@@ -6,10 +6,10 @@
 
 #include "core/kernels/molecules/image.hpp"
 #include "core/kernels/molecules/small/worst_bond.hpp"
-#include "core/kernels/newton/multipliers.hpp"
 #include "core/kernels/molecules/star/atoms.hpp"
 #include "core/kernels/molecules/star/four_bonds.hpp"
 #include "core/kernels/molecules/tree/newton_joint.hpp"
+#include "core/kernels/newton/multipliers.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "core/kernels/molecules/small/worst_bond.hpp"
-#include "core/kernels/newton/multipliers.hpp"
 #include "core/kernels/molecules/triangle/equations.hpp"
+#include "core/kernels/newton/multipliers.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 
