@@ -27,14 +27,14 @@ struct KeptTrees {
     V *w, *pair, *to_last, *reach;  // as in Molecules and Ring
 
     // Number of doubles.
+    static constexpr int64_t of_bond = sizeof(KeptBond<V>) / sizeof(V);
     static int64_t doubles(const EliminationPlan &s) {
-        constexpr int64_t of_bond = sizeof(KeptBond<V>) / sizeof(V);
         const int64_t of_ring = s.type == EliminationPlan::ring ? Ring<V>::values(s) : 0;
         return most_lanes + Width<V>::lanes * (of_bond * s.n_bonds + s.n_atoms + s.n_pairs + of_ring);
     }
     KeptTrees(const EliminationPlan &s, double *block) : lanes(block) {
         Memory<V> memory = {block + most_lanes};
-        bond = reinterpret_cast<KeptBond<V> *>(memory.values(s.n_bonds * (sizeof(KeptBond<V>) / sizeof(V))));
+        bond = reinterpret_cast<KeptBond<V> *>(memory.values(of_bond * s.n_bonds));
         w = memory.values(s.n_atoms);
         pair = memory.values(s.n_pairs);
         to_last = memory.values(s.type == EliminationPlan::ring ? s.n_core : 0);
