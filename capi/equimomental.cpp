@@ -9,7 +9,7 @@ using holonomic::need;
 
 int hol_equimomental_points(double mass, const double *centre, const double *inertia, int64_t *n_points, double *masses,
                             double *places) {
-    return guarded(__func__, [&] {
+    return guarded<holonomic::LongDoubleEnvironment>(__func__, [&] {
         need(inertia, "inertia");
         need(n_points, "n_points");
         need(masses, "masses");

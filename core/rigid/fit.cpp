@@ -241,8 +241,9 @@ Decimals::Decimals(const Distances &wanted, double tolerance)
     const bool may_be_places = of_lengths < 0 && 2 * singles.count < static_cast<std::ptrdiff_t>(values.size());
     int of_places = may_be_places ? decimals_of(values, 6, true) : -1;
     if (of_places >= 0 && wanted.n < 5 && are_flat_on_grid(wanted, of_places)) of_places = -1;
-    // One rounded length says nothing of a distance that is given in full: an angle of nearly 180 degrees is one.
-    const bool most_are = 2 * singles.count > static_cast<std::ptrdiff_t>(values.size());
+    // Two rounded bonds say nothing of a third distance that is given in full: the angle may be nearly 180 degrees.
+    const auto n_values = static_cast<std::ptrdiff_t>(values.size());
+    const bool most_are = wanted.n == 3 ? singles.count == n_values : 2 * singles.count > n_values;
     const double of_single = of_places < 0 && most_are ? singles.coarsest : 0;
     if (of_lengths >= 0) open_ = std::max(open_, std::pow(10.0, -std::max(of_lengths, few_decimals)) / least);
     if (of_places >= 0)

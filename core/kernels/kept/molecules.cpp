@@ -87,7 +87,7 @@ private:
         const unsigned in_use = (1u << used) - 1, kept_lanes = static_cast<unsigned>(from[0]);
         const Found found = call.g.x ? x.template down<true>(pull) : x.template down<false>(pull);
         unsigned good = kept_lanes & in_use & found.finite;
-        if (__builtin_expect(found.n_doubtful > 0, 0)) {
+        if (__builtin_expect(found.n_flagged > 0, 0)) {
             for (int i = 0; i < used; ++i) lane[i] = molecule_of(unit, first + i);
             const Box no_box = {};
             const Molecules<V> m = {s,
@@ -102,7 +102,7 @@ private:
                                     Width<V>::all(1),
                                     {&call.v, &call.f, call.rhs, false},
                                     per_cancelled2};
-            good &= x.look_again(m, found.n_doubtful);
+            good &= x.look_again(m, found.n_flagged);
         }
         if (__builtin_expect(good != (in_use & kept_lanes), 0)) {
             for (int i = 0; i < used; ++i) lane[i] = molecule_of(unit, first + i);

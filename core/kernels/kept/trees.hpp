@@ -11,18 +11,18 @@ namespace holonomic::HOL_ISA::graph {
 // What the way down has found: lanes in which all multipliers are finite; and how many atoms are to be looked at again.
 struct Found {
     unsigned finite;
-    int32_t n_doubtful;
+    int32_t n_flagged;
 };
 // On the way down.
 template <class V>
 struct KeptWay {
     V sum;      // not finite once a value is not
     int32_t n;  // atoms at which a bond may be cancelling
-    int32_t *doubtful;
+    int32_t *flagged;
     HOL_FORCED void count(V t) { sum = mul_add(Width<V>::all(0), t, sum); }
     // least: the smallest size that a bond at the atom has, less the error.
     HOL_FORCED void look(V least, int32_t slot) {
-        if (__builtin_expect(any(less(least, V{})), 0)) doubtful[n++] = slot;
+        if (__builtin_expect(any(less(least, V{})), 0)) flagged[n++] = slot;
     }
 };
 
@@ -33,14 +33,14 @@ struct KeptTreesSolve {
     const KeptTrees<V> kept;
     KeptValue<V> *const value;  // by place
     V *const pulls2;            // by slot, of atoms with many children: what siblings.hpp needs
-    int32_t *const doubtful;
+    int32_t *const flagged;
     const double per_cancelled2;
 
     KeptTreesSolve(const EliminationPlan &plan, const KeptTrees<V> &k, Memory<V> &memory, double cancelled)
         : s(plan), kept(k),
           value(reinterpret_cast<KeptValue<V> *>(memory.values(2 * static_cast<int64_t>(plan.n_bonds)))),
           pulls2(memory.values(plan.max_children > most_decomposed ? plan.n_atoms : 0)),
-          doubtful(reinterpret_cast<int32_t *>(memory.values(plan.n_atoms))), per_cancelled2(cancelled) {}
+          flagged(reinterpret_cast<int32_t *>(memory.values(plan.n_atoms))), per_cancelled2(cancelled) {}
 
     int children(int32_t slot) const { return s.child_start[slot + 1] - s.child_start[slot]; }
     // Which bond of a ring is before the one in a slot.
@@ -68,7 +68,7 @@ struct KeptTreesSolve {
     template <bool pulled>
     inline __attribute__((noinline)) Found down(Vector3<V> *pull) const {
         const KeptTreesSolve y = *this;
-        KeptWay<V> way = {V{}, 0, y.doubtful};
+        KeptWay<V> way = {V{}, 0, y.flagged};
         if (y.s.type == EliminationPlan::tree)
             y.template down_root<pulled>(pull, way);
         else if (y.s.n_tree == 0)
@@ -96,7 +96,7 @@ struct KeptTreesSolve {
     // Looks again at the bonds of atoms at which one may be cancelling. Returns the lanes in which none is.
     inline __attribute__((noinline)) unsigned look_again(Molecules<V> x, int32_t n) const {
         for (int32_t i = 0; i < n; ++i) {
-            const int32_t slot = doubtful[i], k = children(slot), first = s.child_start[slot];
+            const int32_t slot = flagged[i], k = children(slot), first = s.child_start[slot];
             const bool of_ring = slot >= s.n_tree;
             const V shared = shared_error(slot);
             for (int32_t a = of_ring ? -2 : -1; a < k; ++a) {
