@@ -36,6 +36,12 @@ inline void need(std::int64_t count, const void *p, const char *name) {
     if (count != 0) need(p, name);
 }
 
+// How many bonds a call may add that has no list of molecules.
+inline void check_n_bonds(std::int64_t n_bonds) {
+    if (n_bonds < 0 || n_bonds > std::int64_t{1} << 30)
+        throw make_error(Status::value, "n_bonds is %lld; it must be in 0 .. 2^30", static_cast<long long>(n_bonds));
+}
+
 // `function` is the name of the caller's, with which messages begin.
 // Inlined by force: a call on one short chain would spend a tenth of its time in handing down its arguments once more.
 // Arithmetic: LongDoubleEnvironment for a body that calculates with long double. Functions that are not guarded

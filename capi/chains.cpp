@@ -2,6 +2,7 @@
 
 #include "boundary.hpp"
 
+using holonomic::check_n_bonds;
 using holonomic::Checks;
 using holonomic::guarded;
 using holonomic::LongDoubleEnvironment;
@@ -150,9 +151,7 @@ int hol_chains_add_bonds_with_images(hol_chains *chains, int64_t n_bonds, const 
                                      const int64_t *images) {
     return guarded(__func__, [&] {
         need(chains, "chains");
-        if (n_bonds < 0 || n_bonds > int64_t{1} << 30)
-            throw make_error(Status::value, "n_bonds is %lld; it must be in 0 .. 2^30",
-                             static_cast<long long>(n_bonds));
+        check_n_bonds(n_bonds);
         need(n_bonds, pairs, "pairs");
         need(n_bonds, lengths, "lengths");
         need(n_bonds, images, "images");

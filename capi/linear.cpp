@@ -1,9 +1,8 @@
 #include "boundary.hpp"
 
+using holonomic::check_n_bonds;
 using holonomic::guarded;
-using holonomic::make_error;
 using holonomic::need;
-using holonomic::Status;
 
 namespace {
 
@@ -13,8 +12,7 @@ void need_relations(const hol_chains *chains, const int64_t *sizes, const int64_
     need(sizes, "sizes");
     need(atoms, "atoms");
     need(coefficients, "coefficients");
-    if (n_bonds < 0 || n_bonds > int64_t{1} << 30)
-        throw make_error(Status::value, "n_bonds is %lld; it must be in 0 .. 2^30", static_cast<long long>(n_bonds));
+    check_n_bonds(n_bonds);
     if (n_bonds > 0) {
         need(pairs, "pairs");
         need(lengths, "lengths");

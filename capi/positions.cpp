@@ -1,7 +1,5 @@
 #include "core/positions.hpp"
 
-#include <cmath>
-
 #include "boundary.hpp"
 #include "view.hpp"
 

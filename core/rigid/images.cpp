@@ -78,22 +78,13 @@ void Chains::add_with_images(std::int64_t n_bonds, const std::int64_t *pairs, co
         const rigid::Given &given = molecules.back();
         for (std::size_t i = 0; i < given.atoms.size(); ++i) {
             const std::int64_t atom = given.atoms[i];
-            if (i < at(given.n_movable) ? !use_.used(atom) : !(bodies_ && bodies_->is_site(atom))) continue;
-            Error error =
-                make_error(Status::shared_atom,
-                           "atom %s is in a molecule of an earlier call already: all bonds of a molecule must "
-                           "be added in one call",
-                           name_of_atom(atom).text);
-            error.atom = atom;
-            error.base = base;
-            throw error;
+            if (i < at(given.n_movable) ? use_.used(atom) : bodies_ && bodies_->is_site(atom))
+                throw Batch::in_use(*this, atom);
         }
     }
-    std::vector<std::int32_t> told(images_);
-    told.resize(3 * at(n_bonds_), 0);
-    told.insert(told.end(), images, images + 3 * n_bonds);
+    images_.resize(3 * at(n_bonds_), 0);  // what a call that failed has left is behind
+    images_.insert(images_.end(), images, images + 3 * n_bonds);
     commit_rigid(molecules, n_bonds);
-    images_ = std::move(told);
 }
 
 namespace {

@@ -64,13 +64,13 @@ void Batch::take(std::int64_t atom, std::int64_t chain, std::int64_t position) {
     chains_.use_.take(atom);
 }
 
-Error Batch::in_use(std::int64_t atom) const {
+Error Batch::in_use(const Chains &chains, std::int64_t atom) {
     Error error = make_error(Status::shared_atom,
                              "atom %s is in a molecule of an earlier call already: all bonds of a molecule must be "
                              "added in one call",
-                             chains_.name_of_atom(atom).text);
+                             chains.name_of_atom(atom).text);
     error.atom = atom;
-    error.base = chains_.base;
+    error.base = chains.base;
     return error;
 }
 
@@ -197,7 +197,7 @@ void Batch::append_found(const FoundMolecules &found, const BondList &list, cons
                          std::int64_t n_lengths) {
     const std::int64_t n_bonds = list.n_bonds;
     for (std::size_t i = 0; i < found.atoms.size(); ++i)
-        if (!found.fixed[i] && chains_.use_.used(found.atoms[i])) throw in_use(found.atoms[i]);
+        if (!found.fixed[i] && chains_.use_.used(found.atoms[i])) throw in_use(chains_, found.atoms[i]);
     found_ = &found;
     // All at once: where bonds stand in the list in any order, the processor then waits for many of them at a time.
     std::vector<double> in_order(found.bonds.size());
@@ -227,7 +227,7 @@ void Batch::append_found(const FoundMolecules &found, const BondList &list, cons
 
 void Batch::commit() {
     for (const std::int64_t atom : fixed_)
-        if (chains_.bodies_ && chains_.bodies_->is_site(atom)) throw in_use(atom);
+        if (chains_.bodies_ && chains_.bodies_->is_site(atom)) throw in_use(chains_, atom);
     const double longest = chains_.kinds_.longest(static_cast<std::int64_t>(kinds_before_.n_kinds), chains_.longest_);
     chains_.check_width(chains_.box, longest, nullptr);
     chains_.check_width(chains_.box_of_reference(), longest, nullptr);

@@ -27,6 +27,8 @@ public:
     // Whether a molecule has atoms on a line or in a plane that are all bonded to each other.
     bool is_flat() const { return flat_; }
     void commit();
+    // What is said of an atom of a molecule that an earlier call has added.
+    static Error in_use(const Chains &chains, std::int64_t atom);
     // A bond that is in no equation.
     void leave_out(std::int64_t bond, const std::int64_t *atoms, double length);
 
@@ -35,7 +37,6 @@ private:
     std::int32_t shape_of(const FoundMolecules &found, std::size_t m, std::int32_t likely);
     void append_one(const FoundMolecules &found, std::size_t m, std::int32_t shape, const double *lengths);
     void note_direction(const FoundMolecules &found, const FoundMolecule &molecule, const BondList &list);
-    Error in_use(std::int64_t atom) const;
     void check_closable(const Shape &shape, const std::int64_t *atoms, const std::int64_t *bonds,
                         const double *lengths) const;
 

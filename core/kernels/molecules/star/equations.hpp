@@ -57,17 +57,24 @@ struct SmallInverse {
 // In closed form, with one division.
 template <class V>
 struct SmallInverse<3, V> {
-    Inverse3<V> closed;
+    V adj[3][3], r;
     HOL_STATIC SmallInverse of(const V m[3][3]) {
         SmallInverse f;
-        f.closed.set(m);
+        HOL_UNROLL
+        for (int k = 0; k < 3; ++k) {
+            HOL_UNROLL
+            for (int l = 0; l < 3; ++l) {
+                const int a = (l + 1) % 3, b = (l + 2) % 3, c = (k + 1) % 3, d = (k + 2) % 3;
+                f.adj[k][l] = mul_add(m[a][c], m[b][d], -(m[a][d] * m[b][c]));
+            }
+        }
+        f.r = Width<V>::all(1) / mul_add(m[0][2], f.adj[2][0], mul_add(m[0][1], f.adj[1][0], m[0][0] * f.adj[0][0]));
         return f;
     }
     HOL_STATIC void solve(const SmallInverse &f, const V *y, V *t) {
-        const Vector3<V> x = f.closed.times({y[0], y[1], y[2]});
-        t[0] = x.x;
-        t[1] = x.y;
-        t[2] = x.z;
+        HOL_UNROLL
+        for (int k = 0; k < 3; ++k)
+            t[k] = f.r * mul_add(f.adj[k][2], y[2], mul_add(f.adj[k][1], y[1], f.adj[k][0] * y[0]));
     }
 };
 

@@ -7,39 +7,18 @@
 //     t_k = (y_k - c D_k . p) / a_k.
 #pragma once
 
+#include "core/kernels/arithmetic/matrix3.hpp"
 #include "core/kernels/molecules/molecules.hpp"
 
 namespace holonomic::HOL_ISA::graph {
-
-// A matrix of three rows, inverted in closed form.
-template <class V>
-struct Inverse3 {
-    V adj[3][3], r;  // r = 1 / det
-    inline HOL_FORCED void set(const V m[3][3]) {
-        HOL_UNROLL
-        for (int k = 0; k < 3; ++k) {
-            HOL_UNROLL
-            for (int l = 0; l < 3; ++l) {
-                const int a = (l + 1) % 3, b = (l + 2) % 3, c = (k + 1) % 3, d = (k + 2) % 3;
-                adj[k][l] = mul_add(m[a][c], m[b][d], -(m[a][d] * m[b][c]));
-            }
-        }
-        r = Width<V>::all(1) / mul_add(m[0][2], adj[2][0], mul_add(m[0][1], adj[1][0], m[0][0] * adj[0][0]));
-    }
-    inline HOL_FORCED Vector3<V> times(const Vector3<V> &y) const {
-        return {r * mul_add(adj[0][2], y.z, mul_add(adj[0][1], y.y, adj[0][0] * y.x)),
-                r * mul_add(adj[1][2], y.z, mul_add(adj[1][1], y.y, adj[1][0] * y.x)),
-                r * mul_add(adj[2][2], y.z, mul_add(adj[2][1], y.y, adj[2][0] * y.x))};
-    }
-};
 
 template <class V>
 struct FourBonds {
     const V *w;           // [5] inverse masses, the centre first
     const Vector3<V> *b;  // [4]
     Vector3<V> D[4];
-    V a[4], per_a[4], trace;  // of 1 + c G
-    Inverse3<V> N;
+    V a[4], per_a[4], trace;  // the last of 1 + c G
+    Matrix3<V> N;
 
     inline HOL_FORCED void set(const V *masses, const Vector3<V> *moved, const Vector3<V> *reference) {
         w = masses;
@@ -54,36 +33,22 @@ struct FourBonds {
             per_a[k] = r * a[k + 1];
             per_a[k + 1] = r * a[k];
         }
-        V G[3][3];
+        Matrix3<V> M = Matrix3<V>::one();
         HOL_UNROLL
-        for (int k = 0; k < 4; ++k) {
-            const Vector3<V> u = (w[0] * per_a[k]) * b[k];
-            const V rows[3] = {u.x, u.y, u.z}, columns[3] = {D[k].x, D[k].y, D[k].z};
-            HOL_UNROLL
-            for (int i = 0; i < 3; ++i) {
-                HOL_UNROLL
-                for (int j = 0; j < 3; ++j) {
-                    const V before = k == 0 ? Width<V>::all(i == j) : G[i][j];
-                    G[i][j] = mul_add(rows[i], columns[j], before);
-                }
-            }
-        }
-        N.set(G);
-        trace = G[0][0] + G[1][1] + G[2][2];
+        for (int k = 0; k < 4; ++k) M.add((w[0] * per_a[k]) * b[k], D[k]);
+        N = divided_by(M, Width<V>::all(1));
+        trace = M.trace();
     }
 
     // The lanes in which N is so even that it loses few digits: the bonds point everywhere.
-    inline HOL_FORCED MaskOf<V> is_even() const {
-        const V of_inverse = N.r * (N.adj[0][0] + N.adj[1][1] + N.adj[2][2]);
-        return less(trace * of_inverse, Width<V>::all(most_uneven_light));
-    }
+    inline HOL_FORCED MaskOf<V> is_even() const { return less(trace * N.trace(), Width<V>::all(most_uneven_light)); }
 
     // Finds t, and p = sum of b_k t_k.
     inline HOL_FORCED void solve(const V *y, V *t, Vector3<V> &p) const {
         Vector3<V> z = (per_a[0] * y[0]) * b[0];
         HOL_UNROLL
         for (int k = 1; k < 4; ++k) z = add_times(z, per_a[k] * y[k], b[k]);
-        p = N.times(z);
+        p = N * z;
         const Vector3<V> cp = w[0] * p;
         HOL_UNROLL
         for (int k = 0; k < 4; ++k) t[k] = per_a[k] * (y[k] - dot(D[k], cp));
@@ -96,7 +61,7 @@ struct FourBonds {
         V length[4], size[4];
         HOL_UNROLL
         for (int l = 0; l < 4; ++l) {
-            u[l] = (w[0] * per_a[l]) * N.times(b[l]);
+            u[l] = (w[0] * per_a[l]) * (N * b[l]);
             length[l] = sqrt(q[l]);
             size[l] = sqrt(dot(u[l], u[l]));
         }
