@@ -214,7 +214,7 @@ struct LightStarModel {
         Vector3<V> p;
         HOL_UNROLL
         for (int k = 0; k < N; ++k) half[k] = 0.5 * y[k];
-        f.solve(half, tau, p);
+        f.solve(half, Vector3<V>{}, tau, p);
         tau[4] = p.x;
         tau[5] = p.y;
         tau[6] = p.z;

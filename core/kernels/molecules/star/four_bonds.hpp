@@ -5,6 +5,8 @@
 // equations of the centre that are solved (theory (53d)), and they are even if the bonds point everywhere:
 //     p = sum of b_k t_k = N sum of b_k y_k / a_k,   N = (1 + c G)^-1,   G = sum of b_k D_k^T / a_k,
 //     t_k = (y_k - c D_k . p) / a_k.
+// A force F on the centre itself puts - c D_k . F into y_k. It is added to p instead, which N makes small: with y of
+// the others alone, F + p = N (F + sum of b_k y_k / a_k) takes the place of p in t_k.
 #pragma once
 
 #include "core/kernels/arithmetic/matrix3.hpp"
@@ -43,15 +45,15 @@ struct FourBonds {
     // The lanes in which N is so even that it loses few digits: the bonds point everywhere.
     inline HOL_FORCED MaskOf<V> is_even() const { return less(trace * N.trace(), Width<V>::all(most_uneven_light)); }
 
-    // Finds t, and p = sum of b_k t_k.
-    inline HOL_FORCED void solve(const V *y, V *t, Vector3<V> &p) const {
-        Vector3<V> z = (per_a[0] * y[0]) * b[0];
+    // Finds t, and F + p.
+    inline HOL_FORCED void solve(const V *y, const Vector3<V> &force, V *t, Vector3<V> &total) const {
+        Vector3<V> z = force;
         HOL_UNROLL
-        for (int k = 1; k < 4; ++k) z = add_times(z, per_a[k] * y[k], b[k]);
-        p = N * z;
-        const Vector3<V> cp = w[0] * p;
+        for (int k = 0; k < 4; ++k) z = add_times(z, per_a[k] * y[k], b[k]);
+        total = N * z;
+        const Vector3<V> moved = w[0] * total;
         HOL_UNROLL
-        for (int k = 0; k < 4; ++k) t[k] = per_a[k] * (y[k] - dot(D[k], cp));
+        for (int k = 0; k < 4; ++k) t[k] = per_a[k] * (y[k] - dot(D[k], moved));
     }
 
     // Of symmetric equations, H = M^-1: the lanes in which what a multiplier is made of, taken by its size, is no more

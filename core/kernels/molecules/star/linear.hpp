@@ -45,6 +45,7 @@ struct Star<3, V> {
         margin = min(mul_add(Width<V>::all(-least_part), whole, det), margin);
         r = Width<V>::all(1) / det;
     }
+    inline HOL_FORCED Vector3<V> of_centre(const Vector3<V> &f) const { return (-m.w[0]) * f; }
     inline HOL_FORCED void solve(const V *y, V *t) {
         HOL_UNROLL
         for (int k = 0; k < 3; ++k) t[k] = r * mul_add(adj[k][2], y[2], mul_add(adj[k][1], y[1], adj[k][0] * y[0]));
@@ -83,7 +84,7 @@ struct Star<3, V> {
 template <class V>
 struct Star<4, V> {
     const StarMasses<4, V> &m;
-    Vector3<V> d[4], p;  // p = sum of t_k d_k
+    Vector3<V> d[4], force = {}, total;  // of the centre: its own, and with the sum of t_k d_k
     V q[4];
     FourBonds<V> equations;
 
@@ -93,7 +94,13 @@ struct Star<4, V> {
         for (int k = 0; k < 4; ++k) q[k] = dot(d[k], d[k]);
         equations.set(m.w, d, d);
     }
-    inline HOL_FORCED void solve(const V *y, V *t) { equations.solve(y, t, p); }
+    inline HOL_FORCED void solve(const V *y, V *t) { equations.solve(y, force, t, total); }
+
+    // What the centre's force adds to w_k f_k in right-hand sides.
+    inline HOL_FORCED Vector3<V> of_centre(const Vector3<V> &f) {
+        force = f;
+        return Vector3<V>{};
+    }
 
     // The lanes in which t of y is good. (S^-1)_kk is at least 1 / S_kk, and at most 1 / a_k.
     inline HOL_FORCED MaskOf<V> good(const V *y, const V *t) const {
@@ -108,7 +115,8 @@ struct Star<4, V> {
         V least = shared;
         HOL_UNROLL
         for (int k = 0; k < 4; ++k) {
-            const V of_one = equations.per_a[k], alone = y[k] * (m.share[k] * of_one);
+            const V side = mul_add(-m.w[0], dot(d[k], force), y[k]);
+            const V of_one = equations.per_a[k], alone = side * (m.share[k] * of_one);
             const V left = mul_add(-shared, q[k] * (of_one * of_one), mul_add(t[k], t[k], alone * alone));
             least = k == 0 ? left : min(left, least);
         }
@@ -120,7 +128,7 @@ struct Star<4, V> {
     }
 
     inline HOL_FORCED void pull(const V *t, Vector3<V> *g) const {
-        g[0] = p;
+        g[0] = total - force;
         HOL_UNROLL
         for (int k = 0; k < 4; ++k) {
             const Vector3<V> of_bond = t[k] * d[k];
@@ -189,7 +197,7 @@ struct StarForcesVerb {
 
     // As load.hpp makes them.
     template <Inlined where, int N, class V>
-    inline HOL_FORCED void find_sides(const StarAtoms<where, N, V> &atoms, const Star<N, V> &star, V *y) const {
+    inline HOL_FORCED void find_sides(const StarAtoms<where, N, V> &atoms, Star<N, V> &star, V *y) const {
         Vector3<V> a[N + 1];
         HOL_UNROLL
         for (int k = 0; k < N; ++k) y[k] = V{};
@@ -203,7 +211,7 @@ struct StarForcesVerb {
         }
         if (call.f.x) {
             atoms.read(call.f, a);
-            const Vector3<V> first = (-star.m.w[0]) * a[0];
+            const Vector3<V> first = star.of_centre(a[0]);
             HOL_UNROLL
             for (int k = 0; k < N; ++k) {
                 const Vector3<V> d = star.d[k], f = add_times(first, star.m.w[k + 1], a[k + 1]);
