@@ -71,8 +71,9 @@ if [ -n "$same_suite" ] && [ -n "$(ls "$root/srv/gromacs")" ]; then
     echo "GROMACS:"
     inside sh -c 'apt-get install -y -qq --no-install-recommends gromacs /srv/gromacs/*.deb' >"$work/$suite.gromacs.log" 2>&1 ||
         { tail -n 20 "$work/$suite.gromacs.log"; exit 1; }
-    cp -r "$source/hosts/gromacs/tests" "$root/srv/try/gromacs"
-    inside HOLONOMIC_GMX=gmx-holonomic sh -c 'cd /srv/try/gromacs && python3 -m unittest test_gromacs.Accuracy'
+    mkdir "$root/srv/try/gromacs"
+    cp -r "$source/hosts/gromacs/tests" "$source/hosts/gromacs/examples" "$root/srv/try/gromacs"
+    inside HOLONOMIC_GMX=gmx-holonomic sh -c 'cd /srv/try/gromacs/tests && python3 -m unittest test_gromacs.Accuracy'
 fi
 inside apt-get purge -y -qq libholonomic0 >/dev/null
 [ -z "$(find "$root/usr/lib" "$root/usr/include" -name '*holonomic*')" ] || { echo "files are left after the packages are removed"; exit 1; }
