@@ -9,8 +9,8 @@
 #include "core/caller/environment.hpp"
 #include "core/error.hpp"
 #include "core/molecules/chains.hpp"
+#include "core/reference_error.hpp"
 #include "holonomic.h"
-#include "reference_error.hpp"
 
 struct hol_chains {
     holonomic::Chains chains;

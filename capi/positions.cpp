@@ -41,28 +41,12 @@ private:
     holonomic::Report found_;
 };
 
-// What is compared with the lengths is told even where the call fails then; most calls compare nothing.
-class Compared : public holonomic::WorstLength {
-public:
-    explicit Compared(holonomic::ReferenceError &to) : WorstLength{nothing, -1, -1}, to_(to) {}
-    ~Compared() {
-        if (error != nothing) to_.set(*this);
-    }
-    Compared(const Compared &) = delete;
-    Compared &operator=(const Compared &) = delete;
-
-private:
-    static constexpr double nothing = -1;
-    holonomic::ReferenceError &to_;
-};
-
 inline void project(const hol_chains *chains, PositionsCall &call, const AtomArray *bonds, double *virial,
                     hol_report *report) {
     holonomic::need_apart(*chains, call.v, "v", call.r, "r");
     if (!bonds) holonomic::need_apart(*chains, call.v, "v", call.r_ref, "r_ref");
     ReportTo found(report);
-    Compared compared(chains->reference_error);
-    holonomic::project_positions(chains->chains, call, bonds, virial, found.get(), &compared);
+    holonomic::project_positions(chains->chains, call, bonds, virial, found.get(), chains->reference_error);
 }
 
 }  // namespace

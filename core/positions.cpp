@@ -137,13 +137,13 @@ void project_from(const Chains &chains, PositionsCall &call, const Reference *re
     call.virial = virial != nullptr;
     call.report = report != nullptr;
     call.tolerance = chains.tolerance;
-    if (chains.checks() != Checks::never) call.worst_trial = most_stretched * most_stretched - 1;
     call.max_iterations = chains.max_iterations;
     put_box(chains.box, call.box);
     put_box(box_ref, call.box_ref);
-    const double worst_trial = call.worst_trial;
-    call.far_trial = std::min(worst_trial, far_from_lengths);
-    call.worst_trial = std::min(worst_trial, far_from_lengths_of_chains);
+    constexpr double worst_trial = most_stretched * most_stretched - 1;
+    static_assert(far_from_lengths < worst_trial && far_from_lengths_of_chains < worst_trial, "all is tried up to there");
+    call.far_trial = far_from_lengths;
+    call.worst_trial = far_from_lengths_of_chains;
     const bool copies = call.r_ref.x == call.r.x && moves_in_parts(chains.plan());
     AtomArray kept;
     if (copies) {
@@ -155,7 +155,7 @@ void project_from(const Chains &chains, PositionsCall &call, const Reference *re
     apart.put_back();
     if (copies) call.r_ref = kept;
     if (tally.n_bad > 0) {
-        call.far_trial = call.worst_trial = worst_trial;
+        call.far_trial = call.worst_trial = chains.checks() == Checks::never ? __builtin_inf() : worst_trial;
         tally = finish_long_steps(chains, call, reference, tally);
     }
     clear_unconstrained(chains, call.lambda);
@@ -164,16 +164,27 @@ void project_from(const Chains &chains, PositionsCall &call, const Reference *re
     if (virial) write_virial(tally, virial);
 }
 
-void project_positions_of_bonds(const Chains &chains, PositionsCall &call, const AtomArray *bonds, double *virial,
-                                Report *report, WorstLength *reference_error) {
-    if (chains.wants_fit() || (report && chains.checks() == Checks::never)) {
-        const BondVectors given{bonds ? nullptr : &call.r_ref, bonds, bonds ? nullptr : &chains.box_of_reference()};
-        *reference_error = worst_length(chains, given);
-        check_start(chains, given, call.r);
-    }
-    if (!bonds) return project_from(chains, call, nullptr, virial, report);
-    const Reference reference(chains, *bonds);
+// What is compared with the lengths before anything is moved. Apart from the call: most compare nothing.
+[[gnu::noinline]] void compare(const Chains &chains, const PositionsCall &call, const AtomArray *bonds,
+                               ReferenceError *reference_error) {
+    const BondVectors given{bonds ? nullptr : &call.r_ref, bonds, bonds ? nullptr : &chains.box_of_reference()};
+    const WorstLength worst = worst_length(chains, given);
+    if (reference_error) reference_error->set(worst);
+    check_start(chains, given, call.r);
+}
+
+[[gnu::noinline]] void project_along(const Chains &chains, PositionsCall &call, const AtomArray &bonds, double *virial,
+                                     Report *report) {
+    const Reference reference(chains, bonds);
     project_from(chains, call, &reference, virial, report);
+}
+
+void project_positions_of_bonds(const Chains &chains, PositionsCall &call, const AtomArray *bonds, double *virial,
+                                Report *report, ReferenceError *reference_error) {
+    if (chains.wants_fit() || (report && chains.checks() == Checks::never))
+        compare(chains, call, bonds, reference_error);
+    if (!bonds) return project_from(chains, call, nullptr, virial, report);
+    project_along(chains, call, *bonds, virial, report);
 }
 
 // All molecules are looked at before any is moved.
@@ -187,24 +198,22 @@ void check_start_of_all(const Chains &chains, const AtomArray &r_ref, const Atom
 }
 
 void project_positions_of_all(const Chains &chains, const PositionsCall &call, const AtomArray *bonds, double *virial,
-                              Report *report, WorstLength *reference_error) {
+                              Report *report, ReferenceError &reference_error) {
     if (bonds)
         throw make_error(Status::unsupported,
                          "rigid bodies have no bond vectors to project along: hol_project_positions takes reference "
                          "positions");
     const AtomArray &r_ref = call.r_ref;
     if (chains.wants_fit() || (report && chains.checks() == Checks::never)) {
-        *reference_error = worst_length(chains, {&r_ref, nullptr, &chains.box_of_reference()});
-        rigid::worst_length(chains, r_ref, chains.box_of_reference(), reference_error);
+        WorstLength worst = worst_length(chains, {&r_ref, nullptr, &chains.box_of_reference()});
+        rigid::worst_length(chains, r_ref, chains.box_of_reference(), &worst);
+        reference_error.set(worst);
     }
     check_start_of_all(chains, r_ref, call.r);
     double sum[9];
-    WorstLength of_bonds_error{0, -1, -1};
     rigid::Parts parts(chains);
     PositionsCall of_bonds = call;
-    parts.run([&] {
-        project_positions_of_bonds(chains, of_bonds, nullptr, virial ? sum : nullptr, report, &of_bonds_error);
-    });
+    parts.run([&] { project_positions_of_bonds(chains, of_bonds, nullptr, virial ? sum : nullptr, report, nullptr); });
     parts.run([&] {
         rigid::project_positions(chains, r_ref, call.r, call.v, call.dt, call.lambda, virial ? sum : nullptr, report);
     });
@@ -215,10 +224,10 @@ void project_positions_of_all(const Chains &chains, const PositionsCall &call, c
 }  // namespace
 
 void project_positions(const Chains &chains, PositionsCall &call, const AtomArray *bonds, double *virial,
-                       Report *report, WorstLength *reference_error) {
+                       Report *report, ReferenceError &reference_error) {
     with_outcomes(chains, [&] {
         if (chains.bodies()) return project_positions_of_all(chains, call, bonds, virial, report, reference_error);
-        project_positions_of_bonds(chains, call, bonds, virial, report, reference_error);
+        project_positions_of_bonds(chains, call, bonds, virial, report, &reference_error);
     });
 }
 

@@ -3,6 +3,7 @@
 
 #include "core/check.hpp"
 #include "core/molecules/chains.hpp"
+#include "core/reference_error.hpp"
 
 namespace holonomic {
 
@@ -15,9 +16,9 @@ struct Report {
 
 // `call`: with arrays, lambda, dt and guess, the rest is filled in (core/forces.hpp). `bonds`: vectors [n_bonds] to
 // project along in place of those of call.r_ref, or nullptr. virial [9], report: or nullptr. The error that the
-// reference has is written where it is compared with the lengths, and with a report where nothing is compared. Throws
+// reference has is told where it is compared with the lengths, and with a report where nothing else is compared. Throws
 // Error once everything that is due has been written.
 void project_positions(const Chains &chains, PositionsCall &call, const AtomArray *bonds, double *virial,
-                       Report *report, WorstLength *reference_error);
+                       Report *report, ReferenceError &reference_error);
 
 }  // namespace holonomic

@@ -60,7 +60,8 @@ bool divides_chains(const Plan &plan) {
 
 Tally solve_parts(const Chains &chains, const Plan &plan, const SolveCall &call) {
     Apart apart(chains, plan);
-    const Tally tally = execute(chains, plan, SolveWork(call, apart));
+    Tally tally = empty_tally();
+    execute(chains, plan, SolveWork(call, apart), tally);
     apart.put_back();
     return tally;
 }

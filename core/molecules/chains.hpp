@@ -153,6 +153,7 @@ public:
     // units.cpp
     Unit unit(const Plan &plan, const Plan::Piece &piece, Lane *lane) const;  // lane: memory for the first of a group
     MoleculeUnit unit(const Plan &plan, const Plan::Piece &piece, MoleculeLane *lane) const;
+    MoleculeUnit unit_of_group(const Plan &plan, const Plan::Piece &piece, MoleculeLane *lane) const;
     std::int64_t piece_bonds(const Plan::Piece &piece) const;  // of one molecule of the piece; 0 if loose ones
     const std::vector<std::int64_t> &reordered_bonds() const { return groups_.reordered(); }
     const std::vector<std::int64_t> &unconstrained() const { return unconstrained_; }

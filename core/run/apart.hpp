@@ -4,6 +4,8 @@
 #pragma once
 
 #include <cstdint>
+#include <new>
+#include <type_traits>
 
 #include "core/molecules/chains.hpp"
 
@@ -70,7 +72,7 @@ private:
     int n_values_ = 0, n_atoms_ = 0;
 };
 
-// A call as it is given, and variants of it by Where.
+// A call as it is given, and variants of it by Where: most calls need none, and none is set up for them.
 template <class Call>
 class Variants {
 public:
@@ -80,7 +82,7 @@ public:
         : call_(call), made_of_((apart.reorders() ? reordered : 0) | (apart.stages() ? staged : 0)) {
         for (int where = 1; where < n_wheres; ++where) {
             if ((where & made_of_) != where) continue;
-            made_[where - 1] = call;
+            new (&made_[where - 1]) Call(call);
             if (where & reordered) values(made_[where - 1]);
             if (where & staged) atoms(made_[where - 1]);
         }
@@ -93,7 +95,10 @@ public:
 private:
     const Call &call_;
     const int made_of_;
-    Call made_[n_wheres - 1];
+    static_assert(std::is_trivially_destructible<Call>::value, "nothing ends those that are made");
+    union {
+        Call made_[n_wheres - 1];
+    };
 };
 
 // Bonds that are no constraints get a value of 0. Null: nothing.

@@ -88,10 +88,10 @@ std::int64_t long_chain_bonds(const Chains &chains, const Plan &plan, std::int64
     return n > longest_lane ? n : 0;
 }
 
-// Different trees side by side, or those of each shape for a verb that has no way for batches of trees: the plan has
-// them one after the other.
-void work_on_molecules(const Work &work, const MoleculeUnit &unit, int where, double *scratch, Tally &tally) {
-    if (!unit.tree_batches || work.walks_batches()) return work.unit(unit, where, scratch, tally);
+// Different trees side by side, for a verb that has no way for batches of trees: those of each shape, which the plan
+// has one after the other.
+[[gnu::noinline]] void work_on_each_shape(const Work &work, const MoleculeUnit &unit, int where, double *scratch,
+                                          Tally &tally) {
     MoleculeUnit alike{nullptr, unit.lanes, 0, false, unit.large};
     const auto work_on_alike = [&] {
         if (alike.count > 0) work.unit(alike, where, scratch, tally);
@@ -105,6 +105,10 @@ void work_on_molecules(const Work &work, const MoleculeUnit &unit, int where, do
             alike.elimination = shape;
         }
     work_on_alike();
+}
+inline void work_on_molecules(const Work &work, const MoleculeUnit &unit, int where, double *scratch, Tally &tally) {
+    if (!unit.tree_batches || work.walks_batches()) return work.unit(unit, where, scratch, tally);
+    work_on_each_shape(work, unit, where, scratch, tally);
 }
 
 Unit one_of(const Unit &unit, std::int64_t i, Lane *lane) {
@@ -186,24 +190,20 @@ public:
         }
     }
 
-    __attribute__((noinline)) Tally run() const {
+    // Adds to `total`, which is empty.
+    void run(Tally &total) const {
         double *const own_scratch = scratch_of_this_thread(scratch_bytes_);
         const std::int64_t store = std::max(own_store_, shared_store_);
         if (store > 0 && !store_memory(store)) throw std::bad_alloc();
 #ifdef _OPENMP
-        if (n_threads_ > 1) return run_on_threads(own_scratch);
+        if (n_threads_ > 1) return run_on_threads(own_scratch, total);
 #endif
-        Tally total = empty_tally();
-        if (n_pieces_ == 1) {
-            work_on(0, own_scratch, total, nullptr);
-            return total;
-        }
+        if (n_pieces_ == 1) return work_on(0, own_scratch, total, nullptr);
         for (std::int64_t p = 0; p < n_pieces_; ++p) {
             Tally tally = empty_tally();
             work_on(p, own_scratch, tally, nullptr);
             add(total, tally);
         }
-        return total;
     }
 
 private:
@@ -288,7 +288,7 @@ private:
     }
 
     // What is shared comes last, one piece after the other.
-    Tally run_on_threads(double *own_scratch) const {
+    void run_on_threads(double *own_scratch, Tally &total) const {
         Tally *const parts = tallies(Keep::piece_tallies, n_pieces_);
         share(n_threads_, scratch_bytes_, own_store_, n_pieces_, Team::forwards, [&](std::int64_t p, double *scratch) {
             Tally tally = empty_tally();
@@ -309,9 +309,7 @@ private:
             work_on_long_chain(chains_.unit(plan_, piece, &lane).lanes[0], piece.where, team,
                                store_memory(shared_store_), parts[p]);
         }
-        Tally total = empty_tally();
         for (std::int64_t p = 0; p < n_pieces_; ++p) add(total, parts[p]);
-        return total;
     }
 #endif
 
@@ -385,6 +383,8 @@ double *scratch_of_this_thread(std::int64_t bytes) {
     return scratch;
 }
 
-Tally execute(const Chains &chains, const Plan &plan, const Work &work) { return Execution(chains, plan, work).run(); }
+void execute(const Chains &chains, const Plan &plan, const Work &work, Tally &tally) {
+    Execution(chains, plan, work).run(tally);
+}
 
 }  // namespace holonomic

@@ -76,8 +76,8 @@ void write_virial(const double *sum, double *virial);
 // Throws std::bad_alloc.
 double *scratch_of_this_thread(std::int64_t bytes);
 
-// Throws std::bad_alloc before any work is done.
-Tally execute(const Chains &chains, const Plan &plan, const Work &work);
+// Adds to a tally that is empty. Throws std::bad_alloc before any work is done.
+void execute(const Chains &chains, const Plan &plan, const Work &work, Tally &tally);
 
 // Does those of a unit that have been found to be bad once more, in ordinary units: all of them, or those that are
 // listed.
@@ -89,7 +89,7 @@ inline Tally execute(const Chains &chains, const AnyWork &work) {
     const Plan &plan = chains.plan();
     Tally tally = empty_tally();
     if (plan.only.count == 0 || chains.keeps_outcomes) {
-        tally = execute(chains, plan, static_cast<const Work &>(work));
+        execute(chains, plan, static_cast<const Work &>(work), tally);
     } else {
         double *const scratch = scratch_of_this_thread(plan.scratch_bytes);
         std::int64_t bad[most_listed];

@@ -29,7 +29,7 @@ struct Block {
     vec unit, mass;       // the unit, and 1 / unit
     mask movable;         // lanes in which an atom can move
     const vec *w;         // else [n+1], interleaved, in that unit
-    const double *w3[W];  // and [len+1][3], each three times
+    const double *w3[W];  // and [len+1][3], each three times; or nullptr: not yet
     long first_bond[W];
     long chain[W];
 

@@ -197,7 +197,7 @@ static inline bool open_window(const AtomArray &r, const Box &box, const Lane &c
         x.even = x.even && x.skip[i] == x.skip[0];
     }
     open_block(Unit{piece, W, false, false}, 0, x.block, x.lane);
-    set_masses(x.block, x.lane, arena, false);
+    set_masses(x.block, x.lane, arena);
     return true;
 }
 

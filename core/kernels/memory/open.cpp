@@ -6,7 +6,7 @@ namespace holonomic::HOL_ISA {
 #pragma GCC diagnostic push  // gcc 14 takes a vector that is filled element by element for one that was never set
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #endif
-void set_masses(Block &block, const Lane *lane, Arena &arena, bool thrice) {
+void set_masses(Block &block, const Lane *lane, Arena &arena) {
     const double *table[W];
     double constant[W];  // where there is no table
     block.uniform_w = true;
@@ -21,26 +21,31 @@ void set_masses(Block &block, const Lane *lane, Arena &arena, bool thrice) {
     }
     block.mass = splat(1.0) / block.unit;
     block.unit_masses = block.uniform_w && !any(~equal(block.mass, splat(1.0)));
+    block.w3[0] = nullptr;
     if (block.uniform_w) return;
-    const long n_atoms = block.n + 1 + (HOL_FOURS ? 3 : 0);  // fours may end behind the chain
-    vec *w = arena.vecs(n_atoms);
-    bool same = true;
-    for (int i = 1; i < W; ++i)
-        same = same && table[i] == table[0] && constant[i] == constant[0] && block.len[i] == block.len[0];
-    const auto value = [&](int i, long k) HOL_FORCED {  // inert bonds past the end: any positive mass
-        return k > block.len[i] ? 1.0 : (table[i] ? table[i][k] : constant[i]);
-    };
-    interleave(table, block.len, 1, n_atoms, w, value);
+    constexpr int behind = HOL_FOURS ? 3 : 0;  // fours may end behind the chain
+    const long n_atoms = block.n + 1;
+    vec *w = arena.vecs(n_atoms + behind);
+    interleave(table, block.len, 1, n_atoms, w, [&](int i, long k) HOL_FORCED {
+        return k > block.len[i] ? 1.0 : (table[i] ? table[i][k] : constant[i]);  // past the end: any positive mass
+    });
+    HOL_UNROLL
+    for (int k = 0; k < behind; ++k) w[n_atoms + k] = splat(1.0);
     block.w = w;
-    for (int i = 0; i < W && thrice; ++i) {
-        if (i > 0 && same) {
+}
+
+void repeat_masses(Block &block, const Lane *lane, Arena &arena) {
+    if (block.uniform_w || block.w3[0]) return;
+    for (int i = 0; i < W; ++i) {
+        const Lane &first = lane[0], &of = lane[i < block.lanes ? i : 0];
+        if (i > 0 && of.w == first.w && of.w_uniform == first.w_uniform && block.len[i] == block.len[0]) {
             block.w3[i] = block.w3[0];
             continue;
         }
         double *const w3 = arena.doubles(3 * (block.n + 1 + W));
         long k = 0;
-        for (; table[i] && k + W <= block.len[i] + 1; k += W) {
-            const vec x = load(table[i] + k);
+        for (; of.w && k + W <= block.len[i] + 1; k += W) {
+            const vec x = load(of.w + k);
             HOL_UNROLL
             for (int j = 0; j < 3; ++j) {
                 vec three = {};
@@ -49,7 +54,7 @@ void set_masses(Block &block, const Lane *lane, Arena &arena, bool thrice) {
                 store(w3 + 3 * k + j * W, three);
             }
         }
-        for (; k < block.n + 1 + W; ++k) w3[3 * k] = w3[3 * k + 1] = w3[3 * k + 2] = value(i, k);
+        for (; k < block.n + 1 + W; ++k) w3[3 * k] = w3[3 * k + 1] = w3[3 * k + 2] = k > block.n ? 1.0 : block.w[k][i];
         block.w3[i] = w3;
     }
 }

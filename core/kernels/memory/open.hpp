@@ -8,9 +8,11 @@
 
 namespace holonomic::HOL_ISA {
 
-// Inverse masses of the lanes: constant along each, or tables in scratch. `thrice`: also those that forces are
-// multiplied with as they are read.
-void set_masses(Block &, const Lane *, Arena &, bool thrice = true);
+// Inverse masses of the lanes: constant along each, or tables in scratch.
+void set_masses(Block &, const Lane *, Arena &);
+
+// Then, unless it is done: tables of those that forces are multiplied with as they are read, component by component.
+void repeat_masses(Block &, const Lane *, Arena &);
 
 void note_bad(const Block &, mask bad, Tally &);
 
@@ -52,18 +54,20 @@ HOL_INLINE void open_alone(const Lane &chain, bool large, Block &block) {
 
 // Calls work(block, lane, call, arena, tally) for the blocks of a unit. Before that, small(call, unit, block, first,
 // tally) does as many chains as it can and returns the first one that it leaves. In a unit that is not regular it
-// gets no block. `thrice`: as of set_masses().
+// gets no block. `repeated`: work needs repeat_masses().
 template <class Call, class Work, class Small>
 static inline void for_each_block(const Call &call, const Unit &unit, double *scratch, Tally &tally, Work work,
-                                  Small small, bool thrice = true) {
+                                  Small small, bool repeated = true) {
     Block block;
     Lane lane[W];
     Arena arena(scratch, int64_t{0});
     if (W == 1 && unit.count == 1) {  // nothing is copied
         open_alone(unit.lanes[0], unit.large, block);
         arena = Arena(scratch, block.n);
-        set_masses(block, unit.lanes, arena, thrice);
-        if (small(call, unit, block, 0, tally) == 0) work(block, unit.lanes, call, arena, tally);
+        set_masses(block, unit.lanes, arena);
+        if (small(call, unit, block, 0, tally) > 0) return;
+        if (repeated) repeat_masses(block, unit.lanes, arena);
+        work(block, unit.lanes, call, arena, tally);
         return;
     }
     for (int64_t first = 0; first < unit.count;) {
@@ -72,11 +76,12 @@ static inline void for_each_block(const Call &call, const Unit &unit, double *sc
             open_block(unit, first, block, lane);
             if (first == 0 || !unit.regular || block.lanes < W) {
                 arena = Arena(scratch, block.n);
-                set_masses(block, lane, arena, thrice);
+                set_masses(block, lane, arena);
             }
             if (unit.regular && block.lanes == W) next = small(call, unit, block, first, tally);
         }
         if (next == first) {
+            if (repeated) repeat_masses(block, lane, arena);
             work(block, lane, call, arena, tally);
             next = first + block.lanes;
         }

@@ -88,7 +88,7 @@ static void finish_window(const PositionsCall &call, const Lane &lane, int64_t j
             call.lambda[lane.first_bond + k] = moved ? mul_add(factor, tau[k], 0.0) : 0.0;  // zeros as +0
     if (!moved) return;
     Arena arena(scratch, longest_piece);
-    set_masses(s.block, s.lane, arena, false);
+    set_masses(s.block, s.lane, arena);
     Newton x(s.block, BondLengths{}, arena);
     load_bond_vectors(s.block, call.box_ref, open(call.r_ref, s.block, s.lane, arena, true), x.b);
     const double *own_tau[W];

@@ -18,6 +18,7 @@ void eliminate_block(int terms, const Box &box, const Cut &cut, const Lane &lane
     Arena arena = memory;
     SegmentBlock s = segment_block(cut, j, lane);
     set_masses(s.block, s.lane, arena);
+    repeat_masses(s.block, s.lane, arena);
     // All are in place or none is, so that the segments are equally far apart in each array.
     const Packed pr = open(r, s.block, s.lane, arena, true), pv = open(v, s.block, s.lane, arena, true);
     const Packed pf = open(f, s.block, s.lane, arena, true);
@@ -194,7 +195,7 @@ void finish_block(bool weighted, const Box &box, const AtomArray &r, const AtomA
     Arena arena = memory;
     SegmentOutputs out = outputs;
     SegmentBlock s = segment_block(cut, j, lane);
-    if (weighted) set_masses(s.block, s.lane, arena, false);
+    if (weighted) set_masses(s.block, s.lane, arena);
     if (in_place(r, lane)) find_block_before(cut, j, s);
     const Packed pr = open(r, s.block, s.lane, arena, true);
     const Block own = own_block(s);

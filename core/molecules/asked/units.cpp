@@ -74,14 +74,28 @@ Unit Chains::unit(const Plan &plan, const Plan::Piece &p, Lane *lane) const {
 }
 
 MoleculeUnit Chains::unit(const Plan &plan, const Plan::Piece &p, MoleculeLane *lane) const {
-    const bool large = plan.n_bonds > bonds_in_cache;
-    const EliminationPlan *const elimination = plan.elimination_plans[at(p.shape)];
-    const TreeBatch *const tree_batches = p.n_batches > 0 ? plan.tree_batches[p.first_batch] : nullptr;
-    if (p.group < 0)
-        return {elimination, &plan.loose_molecules[at(p.first)], p.count, false, large, nullptr, tree_batches,
-                p.n_batches};
+    if (p.group >= 0) return unit_of_group(plan, p, lane);
+    return {plan.elimination_plans[at(p.shape)],
+            &plan.loose_molecules[at(p.first)],
+            p.count,
+            false,
+            plan.n_bonds > bonds_in_cache,
+            nullptr,
+            p.n_batches > 0 ? plan.tree_batches[p.first_batch] : nullptr,
+            p.n_batches};
+}
+
+// Not inlined: what comes as a list needs none of it.
+[[gnu::noinline]] MoleculeUnit Chains::unit_of_group(const Plan &plan, const Plan::Piece &p, MoleculeLane *lane) const {
     *lane = molecule_lane_of(plan, groups_.all()[at(p.group)], p.first, p.stage, p.part);
-    return {elimination, lane, p.count, true, large, nullptr, tree_batches, p.n_batches};
+    return {plan.elimination_plans[at(p.shape)],
+            lane,
+            p.count,
+            true,
+            plan.n_bonds > bonds_in_cache,
+            nullptr,
+            p.n_batches > 0 ? plan.tree_batches[p.first_batch] : nullptr,
+            p.n_batches};
 }
 
 }  // namespace holonomic

@@ -44,7 +44,7 @@ static inline bool open_pieces(const PathsWork &x, int64_t j, Arena &arena, Path
         p.skip[i] = before;
     }
     open_block(Unit{part, p.used, false, false}, 0, p.block, p.lane);
-    set_masses(p.block, p.lane, arena, false);
+    set_masses(p.block, p.lane, arena);
     return true;
 }
 
@@ -155,7 +155,7 @@ static inline void open_written(const PathsWork &x, int64_t j, Arena &arena, Wri
         if (begins && path.begins_free()) p.free_begin |= 1u << i;
     }
     open_block(Unit{part, used, false, false}, 0, p.block, p.lane);
-    set_masses(p.block, p.lane, arena, false);
+    set_masses(p.block, p.lane, arena);
     p.own = p.block;
     p.own.n_min = p.block.n;
     for (int i = 0; i < W; ++i) {

@@ -1,6 +1,5 @@
 // Of the last reference that a call with a handle has compared with the lengths, by whichever thread.
-#ifndef HOLONOMIC_CAPI_REFERENCE_ERROR_HPP
-#define HOLONOMIC_CAPI_REFERENCE_ERROR_HPP
+#pragma once
 
 #include <mutex>
 
@@ -28,4 +27,3 @@ private:
 };
 
 }  // namespace holonomic
-#endif
