@@ -51,7 +51,7 @@ class BuildWithLibrary(build_py):
                 file.write(f'"""The library that this package was installed beside."""\n\nLIBRARY = {os.path.abspath(library)!r}\n')
             return
         folder = os.environ.get("HOLONOMIC_WHEEL_LIBRARIES") or build_library(os.path.abspath(os.path.join(self.build_lib, "..", "cmake")))
-        for path in glob.glob(os.path.join(folder, "*.so*")):
+        for path in glob.glob(os.path.join(folder, "*.so*")) + glob.glob(os.path.join(folder, "*.dll")):
             shutil.copy(path, package)
 
 
@@ -68,6 +68,8 @@ class TagBySymbols(bdist_wheel):
     def get_tag(self):
         if PREFIX:
             return "py3", "none", "any"
+        if glob.glob(os.path.join(self.bdist_dir, "**", "*.dll"), recursive=True):
+            return "py3", "none", "win_amd64"
         machine = platform.machine()
         libraries = glob.glob(os.path.join(self.bdist_dir, "**", "*.so*"), recursive=True)
         if platform.libc_ver()[0] != "glibc" or not libraries:

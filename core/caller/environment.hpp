@@ -17,13 +17,41 @@ namespace holonomic {
 struct Environment {
     unsigned mxcsr;
     unsigned short x87;
+#if defined(_WIN32)
+    unsigned short x87_flags = 0;
+#endif
 };
+
+#if defined(_WIN32)
+// MinGW's mathematical functions calculate with x87 and leave exceptions there.
+inline unsigned short x87_flags() {
+    unsigned short status;
+    __asm__ volatile("fnstsw %0" : "=m"(status));
+    return status & 0x3f;
+}
+inline void set_x87_flags(unsigned short flags) {
+    struct {
+        unsigned short control, reserved1, status, reserved2, rest[10];
+    } all;  // as fnstenv has it
+    __asm__ volatile("fnstenv %0" : "=m"(all));
+    all.status = static_cast<unsigned short>((all.status & ~0x3f) | flags);
+    __asm__ volatile("fldenv %0" : : "m"(all));
+}
+#endif
 
 // _mm_getcsr is no barrier: compilers move it. Writing takes a quarter of the time of this look.
 inline void read_environment(Environment &e) {
     __asm__ volatile("stmxcsr %0\n\tfnstcw %1" : "=m"(e.mxcsr), "=m"(e.x87));
+#if defined(_WIN32)
+    e.x87_flags = x87_flags();
+#endif
 }
-inline void set_flags(const Environment &to) { __asm__ volatile("ldmxcsr %0" : : "m"(to.mxcsr) : "memory"); }
+inline void set_flags(const Environment &to) {
+#if defined(_WIN32)
+    if (x87_flags() != to.x87_flags) set_x87_flags(to.x87_flags);
+#endif
+    __asm__ volatile("ldmxcsr %0" : : "m"(to.mxcsr) : "memory");
+}
 inline void set_environment(const Environment &to) {
     __asm__ volatile("fldcw %0" : : "m"(to.x87) : "memory");
     set_flags(to);

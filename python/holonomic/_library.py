@@ -12,7 +12,7 @@ except ImportError:
     _INSTALLED = None
 
 _NEEDED = 300  # HOL_VERSION of 0.3.0
-_NAME = "libholonomic.so.0"
+_NAME = "libholonomic-0.dll" if os.name == "nt" else "libholonomic.so.0"
 
 # Result and arguments: p a pointer, i int, l int64_t, d double, s a text, - nothing. A test reads the header beside this.
 SIGNATURES = {

@@ -45,7 +45,7 @@ static hol_chains *waters(double *lambda)
 static void threads_of_a_call_inherit_from_the_caller(void **state)
 {
     (void)state;
-#ifndef _OPENMP
+#if !defined(_OPENMP) || defined(_WIN32) /* where threads begin with the default one, whatever starts them */
     skip();
 #else
     double *lambda = untouched(3 * WATERS);

@@ -6,6 +6,8 @@
 // (tests/oracle/molecules/README.md).
 #pragma once
 
+#include <stdint.h>
+
 #include "core/kernels/isa/lanes.hpp"
 
 namespace holonomic::HOL_ISA {
