@@ -5,7 +5,7 @@
 
 #include "core/caller/box.hpp"
 #include "core/caller/packed_array.hpp"
-#include "core/rigid/run.hpp"
+#include "core/rigid/parts.hpp"
 #include "core/rigid/verbs.hpp"
 #include "core/run/apart.hpp"
 #include "core/run/diagnose.hpp"
@@ -105,20 +105,6 @@ void forces_of_bonds(const Chains &chains, ForcesCall &call, double *virial) {
     if (virial) write_virial(tally, virial);
 }
 
-void forces_of_all(const Chains &chains, const ForcesCall &call, double *virial) {
-    double sum[9];
-    rigid::Parts parts(chains);
-    if (call.g.x && !call.add) parts.clear_fixed(call.g);
-    ForcesCall of_bonds = call;
-    parts.run([&] { forces_of_bonds(chains, of_bonds, virial ? sum : nullptr); });
-    parts.run([&] {
-        rigid::forces(chains, call.r, call.v, call.f, call.lambda, call.tension, call.g, call.add,
-                      virial ? sum : nullptr);
-    });
-    parts.finish();
-    if (virial) write_virial(sum, virial);
-}
-
 }  // namespace
 
 void right_hand_sides(const Chains &chains, const Box &box, const double *L, const AtomArray &r, const AtomArray &v,
@@ -153,8 +139,11 @@ void right_hand_sides(const Chains &chains, const Box &box, const double *L, con
 
 void forces(const Chains &chains, ForcesCall &call, double *virial) {
     with_outcomes(chains, [&] {
-        if (chains.bodies()) return forces_of_all(chains, call, virial);
-        forces_of_bonds(chains, call, virial);
+        rigid::over_all(
+            chains, call.add ? nullptr : &call.g, virial, [&](double *to) { forces_of_bonds(chains, call, to); },
+            [&](double *to) {
+                rigid::forces(chains, call.r, call.v, call.f, call.lambda, call.tension, call.g, call.add, to);
+            });
     });
 }
 

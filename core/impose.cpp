@@ -9,7 +9,7 @@
 #include "core/caller/packed_array.hpp"
 #include "core/error.hpp"
 #include "core/kernels/tally.hpp"
-#include "core/rigid/run.hpp"
+#include "core/rigid/parts.hpp"
 #include "core/rigid/verbs.hpp"
 #include "core/run/diagnose.hpp"
 #include "core/run/outcomes.hpp"
@@ -232,11 +232,8 @@ void impose(const Chains &chains, const AtomArray &r, Report *report) {
     Approach approach(chains, r);
     approach.run(r);  // of whose solves no outcomes are noted
     with_outcomes(chains, [&] {
-        if (!chains.bodies()) return finish(chains, r, approach, report);
-        rigid::Parts parts(chains);
-        parts.run([&] { finish(chains, r, approach, report); });
-        parts.run([&] { rigid::impose(chains, r, report); });
-        parts.finish();
+        rigid::over_all(
+            chains, nullptr, [&] { finish(chains, r, approach, report); }, [&] { rigid::impose(chains, r, report); });
     });
 }
 

@@ -6,6 +6,7 @@
 
 #include "core/caller/box.hpp"
 #include "core/molecules/given/memory_limit.hpp"
+#include "core/rigid/parts.hpp"
 #include "core/run/apart.hpp"
 #include "core/run/diagnose.hpp"
 #include "core/run/execute.hpp"
@@ -100,8 +101,7 @@ std::int64_t more_scratch(const Chains &chains, const EliminationPlan &s) {
 void metric_of_all(const Chains &chains, MetricCall &call, double *energy) {
     if (!(call.kT >= 0) || !std::isfinite(call.kT))
         throw make_error(Status::value, "kT is %g; it must be finite and not negative", call.kT);
-    if (chains.bodies())
-        throw make_error(Status::unsupported,
+    rigid::refuse_bodies(chains,
                          "the metric determinant of molecules with rigid bodies is not implemented: of a body alone it "
                          "is a constant; molecules without bodies need a set of their own");
     call.sum = energy != nullptr;

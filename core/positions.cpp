@@ -8,7 +8,7 @@
 #include "core/check.hpp"
 #include "core/long_step/long_steps.hpp"
 #include "core/reference.hpp"
-#include "core/rigid/run.hpp"
+#include "core/rigid/parts.hpp"
 #include "core/rigid/verbs.hpp"
 #include "core/run/apart.hpp"
 #include "core/run/diagnose.hpp"
@@ -97,14 +97,6 @@ AtomArray copy_of(const AtomArray &array, const Chains &chains) {
     return to;
 }
 
-// Once for a set of molecules, their lengths and the box, and before anything is moved.
-void check_start(const Chains &chains, const BondVectors &reference, const AtomArray &r) {
-    if (!chains.wants_fit()) return;
-    check_reference(chains, reference, reference.r ? "in the reference" : "among the reference vectors");
-    check_trial(chains, r);
-    chains.note_fit();
-}
-
 Report report_of(const Chains &chains, const Tally &tally) {
     const bool none = tally.worst_chain < 0;
     return {tally.iterations,
@@ -141,7 +133,8 @@ void project_from(const Chains &chains, PositionsCall &call, const Reference *re
     put_box(chains.box, call.box);
     put_box(box_ref, call.box_ref);
     constexpr double worst_trial = most_stretched * most_stretched - 1;
-    static_assert(far_from_lengths < worst_trial && far_from_lengths_of_chains < worst_trial, "all is tried up to there");
+    static_assert(far_from_lengths < worst_trial && far_from_lengths_of_chains < worst_trial,
+                  "all is tried up to there");
     call.far_trial = far_from_lengths;
     call.worst_trial = far_from_lengths_of_chains;
     const bool copies = call.r_ref.x == call.r.x && moves_in_parts(chains.plan());
@@ -164,13 +157,20 @@ void project_from(const Chains &chains, PositionsCall &call, const Reference *re
     if (virial) write_virial(tally, virial);
 }
 
-// What is compared with the lengths before anything is moved. Apart from the call: most compare nothing.
+// What is compared with the lengths before anything is moved: once for a set of molecules, their lengths and the box.
+// Apart from the call: most compare nothing.
 [[gnu::noinline]] void compare(const Chains &chains, const PositionsCall &call, const AtomArray *bonds,
-                               ReferenceError *reference_error) {
-    const BondVectors given{bonds ? nullptr : &call.r_ref, bonds, bonds ? nullptr : &chains.box_of_reference()};
-    const WorstLength worst = worst_length(chains, given);
-    if (reference_error) reference_error->set(worst);
-    check_start(chains, given, call.r);
+                               ReferenceError &reference_error) {
+    const Cell &box = chains.box_of_reference();
+    const BondVectors reference{bonds ? nullptr : &call.r_ref, bonds, bonds ? nullptr : &box};
+    WorstLength worst = worst_length(chains, reference);
+    rigid::worst_length(chains, call.r_ref, box, &worst);
+    reference_error.set(worst);
+    if (!chains.wants_fit()) return;
+    check_reference(chains, reference, reference.r ? "in the reference" : "among the reference vectors");
+    check_trial(chains, call.r);
+    rigid::check_reference(chains, call.r_ref, box, "in the reference");
+    chains.note_fit();
 }
 
 [[gnu::noinline]] void project_along(const Chains &chains, PositionsCall &call, const AtomArray &bonds, double *virial,
@@ -179,55 +179,26 @@ void project_from(const Chains &chains, PositionsCall &call, const Reference *re
     project_from(chains, call, &reference, virial, report);
 }
 
-void project_positions_of_bonds(const Chains &chains, PositionsCall &call, const AtomArray *bonds, double *virial,
-                                Report *report, ReferenceError *reference_error) {
-    if (chains.wants_fit() || (report && chains.checks() == Checks::never))
-        compare(chains, call, bonds, reference_error);
-    if (!bonds) return project_from(chains, call, nullptr, virial, report);
-    project_along(chains, call, *bonds, virial, report);
-}
-
-// All molecules are looked at before any is moved.
-void check_start_of_all(const Chains &chains, const AtomArray &r_ref, const AtomArray &r) {
-    if (!chains.wants_fit()) return;
-    const Cell &box = chains.box_of_reference();
-    check_reference(chains, {&r_ref, nullptr, &box}, "in the reference");
-    check_trial(chains, r);
-    rigid::check_reference(chains, r_ref, box, "in the reference");
-    chains.note_fit();
-}
-
-void project_positions_of_all(const Chains &chains, const PositionsCall &call, const AtomArray *bonds, double *virial,
-                              Report *report, ReferenceError &reference_error) {
-    if (bonds)
-        throw make_error(Status::unsupported,
-                         "rigid bodies have no bond vectors to project along: hol_project_positions takes reference "
-                         "positions");
-    const AtomArray &r_ref = call.r_ref;
-    if (chains.wants_fit() || (report && chains.checks() == Checks::never)) {
-        WorstLength worst = worst_length(chains, {&r_ref, nullptr, &chains.box_of_reference()});
-        rigid::worst_length(chains, r_ref, chains.box_of_reference(), &worst);
-        reference_error.set(worst);
-    }
-    check_start_of_all(chains, r_ref, call.r);
-    double sum[9];
-    rigid::Parts parts(chains);
-    PositionsCall of_bonds = call;
-    parts.run([&] { project_positions_of_bonds(chains, of_bonds, nullptr, virial ? sum : nullptr, report, nullptr); });
-    parts.run([&] {
-        rigid::project_positions(chains, r_ref, call.r, call.v, call.dt, call.lambda, virial ? sum : nullptr, report);
-    });
-    parts.finish();
-    if (virial) write_virial(sum, virial);
-}
-
 }  // namespace
 
 void project_positions(const Chains &chains, PositionsCall &call, const AtomArray *bonds, double *virial,
                        Report *report, ReferenceError &reference_error) {
+    if (bonds)
+        rigid::refuse_bodies(chains,
+                             "rigid bodies have no bond vectors to project along: hol_project_positions takes "
+                             "reference positions");
     with_outcomes(chains, [&] {
-        if (chains.bodies()) return project_positions_of_all(chains, call, bonds, virial, report, reference_error);
-        project_positions_of_bonds(chains, call, bonds, virial, report, &reference_error);
+        if (chains.wants_fit() || (report && chains.checks() == Checks::never))
+            compare(chains, call, bonds, reference_error);
+        rigid::over_all(
+            chains, nullptr, virial,
+            [&](double *to) {
+                if (!bonds) return project_from(chains, call, nullptr, to, report);
+                project_along(chains, call, *bonds, to, report);
+            },
+            [&](double *to) {
+                rigid::project_positions(chains, call.r_ref, call.r, call.v, call.dt, call.lambda, to, report);
+            });
     });
 }
 

@@ -5,7 +5,7 @@
 
 #include "core/caller/box.hpp"
 #include "core/caller/packed_array.hpp"
-#include "core/rigid/run.hpp"
+#include "core/rigid/parts.hpp"
 #include "core/rigid/verbs.hpp"
 #include "core/run/apart.hpp"
 #include "core/run/diagnose.hpp"
@@ -226,15 +226,11 @@ void reactions_of_bonds(const Chains &chains, const AtomArray &r, const Cell &bo
 
 void reactions(const Chains &chains, const AtomArray &r, const Cell &box, const double *lambda, Reactions out,
                double *virial) {
-    if (!chains.bodies()) return reactions_of_bonds(chains, r, box, lambda, out, virial);
-    double sum[9];
     out.virial = virial != nullptr;
-    rigid::Parts parts(chains);
-    if (out.g.x && !out.add) parts.clear_fixed(out.g);
-    parts.run([&] { reactions_of_bonds(chains, r, box, lambda, out, virial ? sum : nullptr); });
-    parts.run([&] { rigid::reactions(chains, r, box, lambda, out, virial ? sum : nullptr); });
-    parts.finish();
-    if (virial) write_virial(sum, virial);
+    rigid::over_all(
+        chains, out.add ? nullptr : &out.g, virial,
+        [&](double *to) { reactions_of_bonds(chains, r, box, lambda, out, to); },
+        [&](double *to) { rigid::reactions(chains, r, box, lambda, out, to); });
 }
 
 }  // namespace holonomic

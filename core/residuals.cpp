@@ -5,7 +5,7 @@
 #include "core/caller/box.hpp"
 #include "core/caller/packed_array.hpp"
 #include "core/kernels/tally.hpp"
-#include "core/rigid/run.hpp"
+#include "core/rigid/parts.hpp"
 #include "core/rigid/verbs.hpp"
 #include "core/run/apart.hpp"
 #include "core/run/diagnose.hpp"
@@ -65,11 +65,9 @@ void residuals_of_bonds(const Chains &chains, const AtomArray &r, const AtomArra
 }  // namespace
 
 void residuals(const Chains &chains, const AtomArray &r, const AtomArray &v, double *length, double *rate) {
-    if (!chains.bodies()) return residuals_of_bonds(chains, r, v, length, rate);
-    rigid::Parts parts(chains);
-    parts.run([&] { residuals_of_bonds(chains, r, v, length, rate); });
-    parts.run([&] { rigid::residuals(chains, r, v, length, rate); });
-    parts.finish();
+    rigid::over_all(
+        chains, nullptr, [&] { residuals_of_bonds(chains, r, v, length, rate); },
+        [&] { rigid::residuals(chains, r, v, length, rate); });
 }
 
 }  // namespace holonomic

@@ -5,7 +5,7 @@
 #include <new>
 
 #include "core/reactions.hpp"
-#include "core/rigid/run.hpp"
+#include "core/rigid/parts.hpp"
 #include "core/rigid/verbs.hpp"
 #include "core/run/apart.hpp"
 #include "core/run/diagnose.hpp"
@@ -103,23 +103,15 @@ void solve_bonds(const Chains &chains, const AtomArray &r, const double *rhs, do
     if (virial) write_virial(tally, virial);
 }
 
-void solve_of_all(const Chains &chains, const AtomArray &r, const double *rhs, double *lambda, const AtomArray &g,
-                  bool add, double *virial) {
-    if (!chains.bodies()) return solve_bonds(chains, r, rhs, lambda, g, add, virial);
-    double sum[9];
-    rigid::Parts parts(chains);
-    if (g.x && !add) parts.clear_fixed(g);
-    parts.run([&] { solve_bonds(chains, r, rhs, lambda, g, add, virial ? sum : nullptr); });
-    parts.run([&] { rigid::solve(chains, r, rhs, lambda, g, add, virial ? sum : nullptr); });
-    parts.finish();
-    if (virial) write_virial(sum, virial);
-}
-
 }  // namespace
 
 void solve(const Chains &chains, const AtomArray &r, const double *rhs, double *lambda, const AtomArray &g, bool add,
            double *virial) {
-    with_outcomes(chains, [&] { solve_of_all(chains, r, rhs, lambda, g, add, virial); });
+    with_outcomes(chains, [&] {
+        rigid::over_all(
+            chains, add ? nullptr : &g, virial, [&](double *to) { solve_bonds(chains, r, rhs, lambda, g, add, to); },
+            [&](double *to) { rigid::solve(chains, r, rhs, lambda, g, add, to); });
+    });
 }
 
 }  // namespace holonomic

@@ -4,7 +4,7 @@
 
 #include "core/caller/box.hpp"
 #include "core/caller/packed_array.hpp"
-#include "core/rigid/run.hpp"
+#include "core/rigid/parts.hpp"
 #include "core/rigid/verbs.hpp"
 #include "core/run/apart.hpp"
 #include "core/run/diagnose.hpp"
@@ -91,22 +91,13 @@ void project_velocities_of_bonds(const Chains &chains, VelocitiesCall &call, dou
     if (virial) write_virial(tally, virial);
 }
 
-void project_velocities_of_all(const Chains &chains, const VelocitiesCall &call, double *virial) {
-    double sum[9];
-    rigid::Parts parts(chains);
-    VelocitiesCall of_bonds = call;
-    parts.run([&] { project_velocities_of_bonds(chains, of_bonds, virial ? sum : nullptr); });
-    parts.run([&] { rigid::project_velocities(chains, call.r, call.v, call.lambda, virial ? sum : nullptr); });
-    parts.finish();
-    if (virial) write_virial(sum, virial);
-}
-
 }  // namespace
 
 void project_velocities(const Chains &chains, VelocitiesCall &call, double *virial) {
     with_outcomes(chains, [&] {
-        if (chains.bodies()) return project_velocities_of_all(chains, call, virial);
-        project_velocities_of_bonds(chains, call, virial);
+        rigid::over_all(
+            chains, nullptr, virial, [&](double *to) { project_velocities_of_bonds(chains, call, to); },
+            [&](double *to) { rigid::project_velocities(chains, call.r, call.v, call.lambda, to); });
     });
 }
 

@@ -5,7 +5,7 @@
 #include "core/caller/box.hpp"
 #include "core/caller/packed_array.hpp"
 #include "core/kernels/tally.hpp"
-#include "core/rigid/run.hpp"
+#include "core/rigid/parts.hpp"
 #include "core/rigid/verbs.hpp"
 #include "core/run/diagnose.hpp"
 
@@ -66,12 +66,10 @@ void violation_of_bonds(const Chains &chains, const AtomArray &r, const AtomArra
 }  // namespace
 
 void violation(const Chains &chains, const AtomArray &r, const AtomArray &v, Worst *worst) {
-    if (!chains.bodies()) return violation_of_bonds(chains, r, v, worst);
     Worst found{0, -1, -1, 0, -1, -1};
-    rigid::Parts parts(chains);
-    parts.run([&] { violation_of_bonds(chains, r, v, &found); });
-    parts.run([&] { rigid::violation(chains, r, v, &found); });
-    parts.finish();
+    rigid::over_all(
+        chains, nullptr, [&] { violation_of_bonds(chains, r, v, &found); },
+        [&] { rigid::violation(chains, r, v, &found); });
     *worst = found;
 }
 

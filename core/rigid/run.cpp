@@ -8,6 +8,7 @@
 
 #include "core/caller/environment.hpp"
 #include "core/rigid/blocks.hpp"
+#include "core/rigid/parts.hpp"
 #include "core/run/bond_words.hpp"
 #include "core/run/kernel_choice.hpp"
 #include "core/run/outcomes.hpp"

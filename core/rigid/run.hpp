@@ -47,48 +47,4 @@ Error error_of(const Chains &chains, const Found &found, const Named *arrays, in
 Error error_of_values(const Chains &chains, std::int64_t molecule, const double *values, const char *what,
                       const Error &otherwise);
 
-// Runs the parts of a call, that of molecules without bodies and that with them, each to its end; then throws the first
-// Error, with all bad molecules counted. Where one finds no memory nothing has been written.
-class Parts {
-public:
-    // Gets the memory that the part with bodies will need: throws std::bad_alloc before the other one has written.
-    explicit Parts(const Chains &chains);
-    // Fixed atoms have their forces back unless a part has come to its end.
-    ~Parts();
-    Parts(const Parts &) = delete;
-    Parts &operator=(const Parts &) = delete;
-
-    // g of fixed atoms at molecules with bodies is zero before anything is added to it.
-    void clear_fixed(const AtomArray &g);
-
-    template <class Part>
-    void run(const Part &part) {
-        try {
-            part();
-        } catch (const Error &error) {
-            if (error.n_bad == 0) throw;
-            if (failed_)
-                error_.n_bad += error.n_bad;
-            else
-                error_ = error;
-            failed_ = true;
-        }
-        ended_ = true;
-    }
-    // Throws if one has failed.
-    void finish() const {
-        if (failed_) throw error_;
-    }
-
-private:
-    template <class Each>
-    void for_each_fixed(const Each &each) const;
-
-    const Chains &chains_;
-    double *before_;  // forces on fixed atoms, in the memory that the part with bodies will write to
-    AtomArray cleared_{};
-    bool failed_ = false, ended_ = false;
-    Error error_{};
-};
-
 }  // namespace holonomic::rigid

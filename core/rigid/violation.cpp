@@ -142,6 +142,7 @@ Error another_box(const Chains &chains, std::int64_t molecule, double off, doubl
 }  // namespace
 
 void check_reference(const Chains &chains, const AtomArray &r, const Cell &box, const char *what) {
+    if (!chains.bodies()) return;
     Worst1 worst, cut, inside;
     std::int64_t n_inside = 0;
     Measure(chains).for_each(r, box, [&](const System &system, const Place &place) {
@@ -186,6 +187,7 @@ void check_reference(const Chains &chains, const AtomArray &r, const Cell &box, 
 }
 
 void worst_length(const Chains &chains, const AtomArray &r, const Cell &box, WorstLength *worst) {
+    if (!chains.bodies()) return;
     Worst1 found;
     Measure(chains).for_each(r, box, [&](const System &system, const Place &place) {
         Measure::lengths(system, place, [&](double error, std::int64_t bond, std::int64_t) {

@@ -377,12 +377,6 @@ void write_virial(const Tally &tally, double *virial) {
     for (int i = 0; i < 9; ++i) virial[i] = tally.virial[place[i]];
 }
 
-double *scratch_of_this_thread(std::int64_t bytes) {
-    double *const scratch = scratch_memory(bytes);
-    if (!scratch) throw std::bad_alloc();
-    return scratch;
-}
-
 void execute(const Chains &chains, const Plan &plan, const Work &work, Tally &tally) {
     Execution(chains, plan, work).run(tally);
 }

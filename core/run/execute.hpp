@@ -2,10 +2,12 @@
 #pragma once
 
 #include <algorithm>
+#include <new>
 
 #include "core/kernels/tally.hpp"
 #include "core/molecules/chains.hpp"
 #include "core/run/kernel_choice.hpp"
+#include "core/run/thread_memory.hpp"
 
 namespace holonomic {
 
@@ -74,7 +76,11 @@ void write_virial(const Tally &tally, double *virial);
 void write_virial(const double *sum, double *virial);
 
 // Throws std::bad_alloc.
-double *scratch_of_this_thread(std::int64_t bytes);
+inline double *scratch_of_this_thread(std::int64_t bytes) {
+    void *const scratch = thread_memory(Keep::scratch, bytes);
+    if (__builtin_expect(!scratch, 0)) throw std::bad_alloc();
+    return static_cast<double *>(scratch);
+}
 
 // Adds to a tally that is empty. Throws std::bad_alloc before any work is done.
 void execute(const Chains &chains, const Plan &plan, const Work &work, Tally &tally);

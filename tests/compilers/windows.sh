@@ -77,5 +77,55 @@ for set in ${WINDOWS_SETS:-avx512vl avx2 scalar baseline}; do
         run "$set.$name" "$program"
     done
 done
+unset HOLONOMIC_ISA
+
+# The archive and the wheel, as users get them: programs in C and Fortran print what they print elsewhere, and the DLL that the
+# package for Python asks for by name lies in it and can be loaded.
+packed() {
+    local here=$build/unpacked prefix compiler
+    rm -rf "$here" && mkdir -p "$here/wheel" && (cd "$top" && BUILD_DIR="$build" scripts/windows) || return 1
+    (cd "$here" && cmake -E tar xf "$build"/packages/holonomic-*-windows-x86_64.zip) || return 1
+    prefix=$(ls -d "$here"/holonomic-*)
+    (
+        export WINEPATH="Z:$prefix/bin"
+        cd "$here" || exit 1
+        compiler=$(command -v $target-gcc-posix || command -v $target-gcc)
+        "$compiler" "$top/tests/install/programs/rotor.c" -I"$prefix/include" -L"$prefix/lib" -lholonomic -o rotor_c.exe || exit 1
+        ls "$prefix"/bin/*.dll "$prefix"/lib/* || exit 1
+        "$wine" rotor_c.exe | tr -d '\r' | tee printed
+        grep -q '^tension 1.000 forces 1.000 -1.000$' printed || exit 1
+        compiler=$(command -v $target-gfortran-posix || command -v $target-gfortran) || exit 0
+        "$compiler" "$top/tests/install/programs/rotor_free.f90" -I"$(dirname "$(find "$prefix" -name holonomic.mod)")" -L"$prefix/lib" \
+            -lholonomic_fortran -lholonomic -static -o rotor_f.exe || exit 1
+        "$wine" rotor_f.exe | tr -d '\r' | tee printed
+        grep -q '^tension 1.000 forces 1.000 -1.000$' printed
+    ) || return 1
+    ls "$build"/packages/*.whl >/dev/null 2>&1 || return 0
+    (cd "$here/wheel" && cmake -E tar xf "$build"/packages/holonomic-*-py3-none-win_amd64.whl) || return 1
+    cat >"$here/load.c" <<'END'
+#include <stdio.h>
+#include <windows.h>
+int main(int n, char **name)
+{
+    HMODULE library = LoadLibraryA(name[n - 1]);
+    const char *(*version)(void) = library ? (const char *(*)(void))(void *)GetProcAddress(library, "hol_version") : NULL;
+    return version ? printf("wheel: holonomic %s\n", version()) < 0 : 1;
+}
+END
+    compiler=$(command -v $target-gcc-posix || command -v $target-gcc)
+    "$compiler" "$here/load.c" -o "$here/load.exe" || return 1
+    (
+        unset WINEPATH
+        name=$(sed -n 's/^_NAME = "\(.*\)" if os.name == "nt".*/\1/p' "$here/wheel/holonomic/_library.py")
+        cd "$here" && [ -n "$name" ] && "$wine" load.exe "wheel\\holonomic\\$name"
+    )
+}
+if packed >"$build/packed.log" 2>&1; then
+    passed=$((passed + 1))
+else
+    echo "packages: status $?"
+    tail -n 5 "$build/packed.log"
+    failed=$((failed + 1))
+fi
 echo "$passed passed, $failed failed, in $((SECONDS - began)) s"
 [ "$failed" -eq 0 ] && [ "$passed" -gt 0 ]
