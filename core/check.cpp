@@ -219,7 +219,7 @@ Error stretched_error(const Chains &chains, const Molecule &m, std::int64_t bond
 }  // namespace
 
 void check_reference(const Chains &chains, const BondVectors &bonds, const char *what) {
-    const double half = bonds.box ? half_width(*bonds.box) : std::numeric_limits<double>::infinity();
+    const double half = bonds.r ? half_width(*bonds.box) : std::numeric_limits<double>::infinity();
     const double longest = half * (1 + 1e-6);
     if (all_within(chains, bonds, 1 - most_off, 1 + most_off, longest)) {
         if (bonds.r) check_cut(chains, *bonds.r, *bonds.box, what);

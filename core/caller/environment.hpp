@@ -129,8 +129,8 @@ private:
 };
 
 // The same where long double is used. On x86-64 x87 calculates with these; to look at what exceptions it has seen, and
-// to forget new ones, takes as long as a call on one bond.
-#if defined(__x86_64__)
+// to forget new ones, takes as long as a call on one bond. On Windows all calls do.
+#if defined(__x86_64__) && !defined(_WIN32)
 class LongDoubleEnvironment {
 public:
     LongDoubleEnvironment() {

@@ -84,7 +84,7 @@ private:
     }
 
     const bool *periodic_;
-    Rows m_, g_, n_ = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    Rows m_, g_ = {}, n_ = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 };
 
 double steepest(const Rows m, const bool *periodic) {

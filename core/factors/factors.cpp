@@ -134,10 +134,10 @@ void Factors::solve_all(const FactorsSolve &what, const double *rhs, double *vir
     const std::int64_t n_atoms = chains_.n_atoms(), n = chains_.n_molecules();
     const auto other = [&](const AtomArray &a) { return a.x && !a.packed; };
     const std::int64_t n_others = other(what.v) + other(what.f) + other(what.g);
-    const std::int64_t of_left = (n + alignment - 1) / alignment * alignment;
-    char *memory = static_cast<char *>(
-        thread_memory(Keep::factors, of_left + 3 * n_others * n_atoms * static_cast<std::int64_t>(sizeof(double))));
-    if (!memory && of_left > 0) throw std::bad_alloc();
+    const std::int64_t of_left = (n / alignment + 1) * alignment;
+    const std::int64_t bytes = of_left + 3 * n_others * n_atoms * static_cast<std::int64_t>(sizeof(double));
+    char *memory = static_cast<char *>(thread_memory(Keep::factors, bytes));
+    if (!memory) throw std::bad_alloc();
     unsigned char *const left = reinterpret_cast<unsigned char *>(memory);
     std::fill(left, left + n, 0);
     double *next = reinterpret_cast<double *>(memory + of_left);

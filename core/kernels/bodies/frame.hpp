@@ -37,7 +37,7 @@ struct Frame {
 
     Frame() = default;
     HOL_FORCED Frame(const Frame &from) { *this = from; }
-    HOL_FORCED Frame &operator=(const Frame &from) {
+    HOL_FORCED Frame &operator=(const Frame &from) {  // NOLINT(bugprone-unhandled-self-assignment): each part by itself
         HOL_UNROLL_FEW
         for (int k = 0; k <= R; ++k) put(of[k], from.of[k]);
         return *this;

@@ -187,9 +187,8 @@ HOL_NOINLINE mask substitute_listed(const Block &block, const System &s, const A
 HOL_NOINLINE mask substitute_given(const Block &block, const System &s, const double *rhs) {
     const vec half = 0.5 * block.mass;
     vec y = {}, size = {};
-    const double *const own = rhs + block.first_bond[0];
     for (long k = 0; W == 1 && k < block.n; ++k) {
-        y = mul_add(s.L[k], y, half * own[k]);
+        y = mul_add(s.L[k], y, half * rhs[block.first_bond[0] + k]);
         const vec u = y * s.pivots[k];
         s.t[k] = u;
         size = size + abs(u);

@@ -147,7 +147,8 @@ HOL_INLINE void write(const AtomArray &array, const Atoms<V> &at, int64_t k, con
         rows_of_atom(array, at, k, p);
         return write_rows(p, a);
     }
-    const Vector3<V> copy = a;  // what is passed by its address stays in memory
+    // What is passed by its address stays in memory. NOLINTNEXTLINE(performance-unnecessary-copy-initialization)
+    const Vector3<V> copy = a;
     write_anywhere(array, at, k, copy, which);
 }
 
