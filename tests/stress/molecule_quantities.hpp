@@ -1,15 +1,11 @@
 /**
  * @file molecule_quantities.hpp
- * What is compared for molecules of any shape, each error over its bound (tests/oracle/molecules/README.md), so that
- * more than 1 is an exceedance.
+ * What is compared for molecules of any shape, with the bounds of tests/oracle/molecules/README.md.
  */
 #ifndef STRESS_MOLECULE_QUANTITIES_HPP
 #define STRESS_MOLECULE_QUANTITIES_HPP
 
-#include <array>
-#include <cmath>
-#include <cstdio>
-#include <string>
+#include "verdict.hpp"
 
 namespace stress
 {
@@ -39,64 +35,24 @@ enum molecule_quantity {
     M_QUANTITIES
 };
 
-inline const char *molecule_quantity_name(int q)
-{
-    static const char *const names[M_QUANTITIES] = {
-        "lambda",    "G",         "virial",       "lambda (solve)", "mu",        "velocities",
-        "ln det",    "ln det Z",  "Fixman",       "inverse",        "positions", "lambda (r)",
-        "of chains", "other one", "bonds left",   "refused step",   "refused",   "accepted",
-        "outputs",   "same bits", "units, mirror"};
-    return names[q];
-}
-
-/** The largest error over bound of each quantity; negative where it was not checked. */
-struct molecule_verdict {
-    std::array<long double, M_QUANTITIES> ratio;
-    molecule_verdict()
+template <>
+struct quantities<molecule_quantity> {
+    static constexpr std::size_t count = M_QUANTITIES;
+    static const char *name(molecule_quantity q)
     {
-        ratio.fill(-1);
+        static const char *const names[M_QUANTITIES] = {
+            "lambda",    "G",         "virial",       "lambda (solve)", "mu",        "velocities",
+            "ln det",    "ln det Z",  "Fixman",       "inverse",        "positions", "lambda (r)",
+            "of chains", "other one", "bonds left",   "refused step",   "refused",   "accepted",
+            "outputs",   "same bits", "units, mirror"};
+        return names[q];
     }
-
-    void note(molecule_quantity q, long double value)
+    static bool for_information(molecule_quantity q)
     {
-        if (!(value <= ratio[q])) ratio[q] = std::isnan(value) ? HUGE_VALL : value;
-    }
-    void note(molecule_quantity q, bool wrong)
-    {
-        note(q, wrong ? HUGE_VALL : 0.0L);
-    }
-    /** allowed 0: the number must be met exactly. */
-    void compare(molecule_quantity q, double value, long double reference, long double allowed)
-    {
-        const long double error = std::fabs(value - reference);
-        note(q, error == 0 ? 0 : error / allowed);
-    }
-    void add(const molecule_verdict &other)
-    {
-        for (std::size_t q = 0; q < ratio.size(); ++q)
-            if (other.ratio[q] > ratio[q]) ratio[q] = other.ratio[q];
+        return q == M_REFUSED_STEP || q == M_CHAIN_LAMBDA;
     }
 };
-
-/** Quantities that are counted but promised nowhere. */
-inline bool is_information(int q)
-{
-    return q == M_REFUSED_STEP || q == M_CHAIN_LAMBDA;
-}
-
-/** What exceeds its bound, for people. */
-inline std::string exceeded_words(const molecule_verdict &v)
-{
-    std::string words;
-    char text[64];
-    for (int q = 0; q < M_QUANTITIES; ++q) {
-        const long double x = v.ratio[static_cast<std::size_t>(q)];
-        if (!(x > 1) || is_information(q)) continue;
-        std::snprintf(text, sizeof text, " %s %.3Lg times its bound;", molecule_quantity_name(q), x);
-        words += text;
-    }
-    return words;
-}
+using molecule_verdict = verdict_of<molecule_quantity>;
 
 }  // namespace stress
 

@@ -1,13 +1,13 @@
 /**
  * @file quantities.hpp
- * What is compared, and by how much it was off: each error over its bound, so that more than 1 is an exceedance.
+ * What is compared for chains.
  */
 #ifndef STRESS_QUANTITIES_HPP
 #define STRESS_QUANTITIES_HPP
 
-#include <array>
 #include <cfloat>
-#include <cmath>
+
+#include "verdict.hpp"
 
 namespace stress
 {
@@ -37,55 +37,23 @@ enum quantity {
     N_QUANTITIES
 };
 
-inline const char *quantity_name(int q)
-{
-    static const char *const names[N_QUANTITIES] = {
-        "lambda",    "lambda, K",    "G",          "virial",     "ln det",       "Fixman force", "inverse",
-        "condition", "error bound",  "lambda (v)", "velocities", "d.dv left",    "bond lengths", "bond by bond",
-        "shift (r)", "refused step", "refused",    "accepted",   "outputs kept", "same bits",    "undecided"};
-    return names[q];
-}
-
-/** The largest error over bound of each quantity; negative where it was not checked. */
-struct verdict {
-    std::array<long double, N_QUANTITIES> ratio;
-    verdict()
+template <>
+struct quantities<quantity> {
+    static constexpr std::size_t count = N_QUANTITIES;
+    static const char *name(quantity q)
     {
-        ratio.fill(-1);
+        static const char *const names[N_QUANTITIES] = {
+            "lambda",    "lambda, K",    "G",          "virial",     "ln det",       "Fixman force", "inverse",
+            "condition", "error bound",  "lambda (v)", "velocities", "d.dv left",    "bond lengths", "bond by bond",
+            "shift (r)", "refused step", "refused",    "accepted",   "outputs kept", "same bits",    "undecided"};
+        return names[q];
     }
-
-    void note(quantity q, long double value)
+    static bool for_information(quantity q)
     {
-        if (!(value <= ratio[q])) ratio[q] = std::isnan(value) ? HUGE_VALL : value;
+        return q == LAMBDA_NEAR || q == POSITION_LENGTH_LOCAL || q == REFUSED_STEP || q == UNDECIDED;
     }
-    void note(quantity q, bool wrong)
-    {
-        note(q, wrong ? HUGE_VALL : 0.0L);
-    }
-
-    /** A number against its reference; allowed is the largest error that is right, 0: the number must be met exactly.
-     */
-    void compare(quantity q, double value, long double reference, long double allowed)
-    {
-        const long double error = std::fabs(value - reference);
-        note(q, error == 0 ? 0 : error / allowed);
-    }
-
-    bool exceeded() const;
 };
-
-/** Quantities that are counted but promised nowhere. */
-inline bool for_information(int q)
-{
-    return q == LAMBDA_NEAR || q == POSITION_LENGTH_LOCAL || q == REFUSED_STEP || q == UNDECIDED;
-}
-
-inline bool verdict::exceeded() const
-{
-    for (int q = 0; q < N_QUANTITIES; ++q)
-        if (!for_information(q) && ratio[static_cast<std::size_t>(q)] > 1) return true;
-    return false;
-}
+using verdict = verdict_of<quantity>;
 
 }  // namespace stress
 

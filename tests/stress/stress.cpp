@@ -17,25 +17,19 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <cstdlib>
-#include <cstring>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "case_file.hpp"
 #include "checks.hpp"
+#include "harness.hpp"
 #include "invariances.hpp"
 #include "seam_features.hpp"
-#include "soak.hpp"
-#include "tally.hpp"
 
 using namespace stress;
 
 namespace
 {
-
-constexpr long double largest_excess = 3;
 
 /** A chain on its own, with what it is compared with. */
 struct checked_chain {
@@ -45,6 +39,30 @@ struct checked_chain {
     explicit checked_chain(const hostile_chain &chain, const char *kind)
         : c(chain), exact(chain), name(kind + std::to_string(chain.seed))
     {
+    }
+};
+
+/** Chains are one class; their features are counted besides. */
+struct tally : tally_of<quantity> {
+    std::array<std::int64_t, n_features> with_feature{}, exceeded_with_feature{};
+
+    void add(const checked_chain &x, const verdict &v)
+    {
+        const auto &metric = x.exact.metric;
+        tally_of<quantity>::add(0, {x.c.n_bonds, x.c.seed, metric.regular, true, metric.condition}, v);
+        for (std::size_t bit = 0; bit < n_features; ++bit) {
+            if (!(x.c.features >> bit & 1u)) continue;
+            ++with_feature[bit];
+            exceeded_with_feature[bit] += v.exceeded();
+        }
+    }
+    void add(const tally &other)
+    {
+        tally_of<quantity>::add(other);
+        for (std::size_t bit = 0; bit < n_features; ++bit) {
+            with_feature[bit] += other.with_feature[bit];
+            exceeded_with_feature[bit] += other.exceeded_with_feature[bit];
+        }
     }
 };
 
@@ -77,22 +95,9 @@ struct group_of_chains {
     }
 };
 
-std::string exceeded_words(const verdict &v)
-{
-    std::string words;
-    char text[64];
-    for (int q = 0; q < N_QUANTITIES; ++q) {
-        const long double x = v.ratio[static_cast<std::size_t>(q)];
-        if (!(x > 1) || for_information(q)) continue;
-        std::snprintf(text, sizeof text, " %s %.3Lg times its bound;", quantity_name(q), x);
-        words += text;
-    }
-    return words;
-}
-
 void report(const checked_chain &x, const chain_group &group, const verdict &v, const std::string &directory)
 {
-    const std::string words = exceeded_words(v);
+    const std::string words = v.words();
     const bool seam = group.longest == 0;
     std::printf(
         "%s%s%s, %lld bonds, condition number %.1Le:%s repeat with HOLONOMIC_ISA=%s tests/stress/stress %s %llu "
@@ -113,10 +118,8 @@ void check(const group_of_chains &g, const std::string &directory, tally &sum)
     for (std::size_t k = 0; k < g.chains.size(); ++k) {
         const checked_chain &x = g.chains[k];
         verdict v = check_alone(x.c, x.exact);
-        for (std::size_t q = 0; q < v.ratio.size(); ++q) v.ratio[q] = std::max(v.ratio[q], verdicts[k].ratio[q]);
-        sum.add(x.c, v);
-        sum.singular += !x.exact.metric.regular;
-        if (x.exact.metric.regular) sum.largest_condition = std::max(sum.largest_condition, x.exact.metric.condition);
+        v.add(verdicts[k]);
+        sum.add(x, v);
         if (v.exceeded()) report(x, g.group, v, directory);
     }
 }
@@ -140,84 +143,102 @@ int check_file(const char *path)
     v.note(OUTPUTS_KEPT, same[place].ratio[OUTPUTS_KEPT]);
     std::printf("%s: %lld bonds, condition number %.2Le\n", path, static_cast<long long>(c.n_bonds),
                 exact.metric.condition);
-    for (int q = 0; q < N_QUANTITIES; ++q)
-        if (v.ratio[static_cast<std::size_t>(q)] >= 0)
-            std::printf("%-14s %12.3Lg of its bound\n", quantity_name(q), v.ratio[static_cast<std::size_t>(q)]);
+    v.print();
     return v.exceeded() ? 1 : status_of_undecided(v.ratio[UNDECIDED] > 0, 1);
+}
+
+const char *chains_name(int)
+{
+    return "chains";
+}
+constexpr class_names chains{chains_name, 1, "chain"};
+
+void write_chains(const std::vector<std::string> &sets, const std::vector<tally> &of_set)
+{
+    const markdown_table table(sets);
+    if (!table.out) return;
+    table.row("chains", [&](std::size_t s) { return std::to_string(of_set[s].classes[0].cases); });
+    table.row("above a bound", [&](std::size_t s) { return std::to_string(of_set[s].classes[0].exceeded); });
+    table.row("lambda above K alone",
+              [&](std::size_t s) { return std::to_string(of_set[s].classes[0].quantity[LAMBDA_NEAR].exceeded); });
+    for (std::size_t q = 0; q < N_QUANTITIES; ++q)
+        if ((!tally::for_information(q) || q == LAMBDA_NEAR) && of_set[0].classes[0].quantity[q].checked > 0)
+            table.row(tally::name(q),
+                      [&](std::size_t s) { return table.number(of_set[s].classes[0].quantity[q].worst); });
+}
+
+void print(const std::vector<std::string> &sets, const std::vector<tally> &of_set)
+{
+    print_tables(chains, sets, of_set);
+    write_chains(sets, of_set);
+    tally all;
+    for (const tally &t : of_set) all.add(t);
+    std::printf("\n%-20s %10s %10s\n", "chains with", "checked", "exceeded");
+    for (std::size_t bit = 0; bit < n_features; ++bit)
+        std::printf("%-20s %10lld %10lld\n", feature_name(static_cast<int>(bit)),
+                    static_cast<long long>(all.with_feature[bit]),
+                    static_cast<long long>(all.exceeded_with_feature[bit]));
+    print_sums(chains, sets, of_set);
+    std::printf("stress: %lld chains, %lld exceed a bound\n", static_cast<long long>(all.all().cases),
+                static_cast<long long>(all.all().exceeded));
 }
 
 /** longest 0: chains by features at seams, every `step`th of them round and round. */
 int run(const soak_options &options, std::int64_t longest, const std::string &directory, double percent,
         std::uint64_t step = 1)
 {
-    const std::vector<std::string> sets = sets_of_kernels();
-    shared_tallies<tally> tallies(options.workers, sets.size());
-    std::vector<group_of_chains> batch;
-    soak_work work;
-    work.prepare = [&](std::uint64_t first) {
-        if (longest > 0) batch.emplace_back(first, longest);
-        for (std::uint64_t k = 0; longest == 0 && k < group_size && first + k < options.end; ++k)
-            batch.emplace_back(make_seam_chain((first + k) * step % n_seam_chains()));
-    };
-    work.check = [&](unsigned worker, std::size_t set) {
-        for (const group_of_chains &g : batch) check(g, directory, tallies.of(worker, set));
-    };
-    work.clear = [&] { batch.clear(); };
-    const auto sum = [&] {
-        tally all;
-        for (const tally &t : tallies.of_all_sets()) all.add(t);
-        return all;
-    };
-    work.progress = [&] {
-        const tally all = sum();
-        std::fprintf(stderr, "%lld chains, %lld above a bound, the largest error of lambda is %.2Lg of its bound\n",
-                     static_cast<long long>(all.chains), static_cast<long long>(all.exceeded),
-                     all.quantity[LAMBDA].worst);
-    };
-    work.repeat = longest > 0 ? "tests/stress/stress --group" : "tests/stress/stress --seams";
+    using groups = std::vector<group_of_chains>;
+    const harness<groups, tally> h{"stress",
+                                   longest > 0 ? "--group" : "--seams",
+                                   chains,
+                                   [&](std::uint64_t first) {
+                                       groups all;
+                                       if (longest > 0) all.emplace_back(first, longest);
+                                       for (std::uint64_t k = 0;
+                                            longest == 0 && k < group_size && first + k < options.end; ++k)
+                                           all.emplace_back(make_seam_chain((first + k) * step % n_seam_chains()));
+                                       return all;
+                                   },
+                                   [&](const groups &all, tally &sum) {
+                                       for (const group_of_chains &g : all) check(g, directory, sum);
+                                   },
+                                   print};
     const auto start = std::chrono::steady_clock::now();
-    const int lost = soak(options, sets, work);
+    bool within = false;
+    tally all;
+    for (const tally &t : h.run(options, percent, within)) all.add(t);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    print(sets, tallies.of_all_sets());
-    const tally all = sum();
     std::printf("stress: %.0f chains an hour in %u processes, a chain counted for each set of kernels\n",
-                3600 * static_cast<double>(all.chains) / seconds, options.workers);
-    if (lost > 0) std::printf("stress: %d processes ended before their time\n", lost);
-    const double allowed = percent < 0 ? 0 : percent / 100 * static_cast<double>(all.chains);
-    if (lost > 0 || static_cast<double>(all.exceeded) > allowed || (percent >= 0 && all.worst() > largest_excess))
-        return 1;
-    return status_of_undecided(all.quantity[UNDECIDED].exceeded, all.chains);
+                3600 * static_cast<double>(all.all().cases) / seconds, options.workers);
+    return within ? status_of_undecided(all.classes[0].quantity[UNDECIDED].exceeded, all.all().cases) : 1;
 }
 
 }  // namespace
 
 int main(int argc, char **argv)
 {
-    const auto integer = [&](int i, long long otherwise) { return argc > i ? std::atoll(argv[i]) : otherwise; };
-    if (argc == 3 && std::strcmp(argv[1], "--case") == 0) return check_file(argv[2]);
-    if (argc >= 3 && std::strcmp(argv[1], "--group") == 0)
-        return run({1e-9, static_cast<std::uint64_t>(integer(2, 1)), 1}, std::max(1LL, integer(3, 2000)), "", -1);
-    const auto processes = [&](int i) {
-        return static_cast<unsigned>(
-            std::max(1LL, integer(i, static_cast<long long>(std::thread::hardware_concurrency()))));
+    const arguments given{argc, argv};
+    const auto longest = [&](int i) {
+        return static_cast<std::int64_t>(std::max<std::uint64_t>(1, given.number(i, 2000)));
     };
+    if (argc == 3 && given.is(1, "--case")) return check_file(argv[2]);
+    if (argc >= 3 && given.is(1, "--group")) return run(one_group(given.number(2, 1)), longest(3), "", -1);
     soak_options options;
-    if (argc >= 2 && std::strcmp(argv[1], "--seams") == 0) {
+    if (given.is(1, "--seams")) {
         options.seconds = 1e9;
-        options.first = static_cast<std::uint64_t>(integer(2, 0));
-        options.end = argc > 3 ? options.first + static_cast<std::uint64_t>(integer(3, 0)) : n_seam_chains();
-        options.workers = processes(4);
-        return run(options, 0, "", -1, static_cast<std::uint64_t>(std::max(1LL, integer(5, 1))));
+        options.first = given.number(2, 0);
+        options.end = argc > 3 ? options.first + given.number(3, 0) : n_seam_chains();
+        options.workers = given.processes(4);
+        return run(options, 0, "", -1, std::max<std::uint64_t>(1, given.number(5, 1)));
     }
-    options.seconds = argc >= 2 ? std::atof(argv[1]) : 0;
+    options.seconds = given.real(1, 0);
     if (!(options.seconds > 0) || argc > 7) {
         std::fprintf(stderr,
                      "usage: stress SECONDS [DIRECTORY [FIRST [PROCESSES [LONGEST [PERCENT]]]]] | stress --group "
                      "FIRST [LONGEST] | stress --case FILE\n");
         return 2;
     }
-    options.first = static_cast<std::uint64_t>(integer(3, 1));
-    options.workers =
-        static_cast<unsigned>(std::max(1LL, integer(4, static_cast<long long>(std::thread::hardware_concurrency()))));
-    return run(options, std::max(1LL, integer(5, 2000)), argc >= 3 ? argv[2] : "", argc >= 7 ? std::atof(argv[6]) : -1);
+    options.first = given.number(3, 1);
+    options.workers = given.processes(4);
+    return run(options, longest(5), given.text(2), given.real(6, -1));
 }

@@ -12,22 +12,18 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
-#include <string>
-#include <thread>
 #include <vector>
 
 #include "body_checks.hpp"
-#include "molecule_tally.hpp"
+#include "harness.hpp"
 #include "random.h"
-#include "soak.hpp"
 
 using namespace stress;
 
 namespace
 {
 
-constexpr long double largest_excess = 3;
+using tally = tally_of<molecule_quantity>;
 
 unsigned long long number(std::uint64_t n)
 {
@@ -57,10 +53,12 @@ struct group_of_bodies {
         const std::uint64_t kind = first / group_size % 4;
         return kind == 1 ? make_related(seed) : kind == 3 ? make_listed(seed) : make_hostile_body(seed);
     }
-    void solve()
+    static group_of_bodies solved(std::uint64_t from)
     {
-        for (const hostile_body &m : molecules)
-            exact.push_back(m.shape == LISTED ? reference::rigid_solution() : solution_of(m));
+        group_of_bodies g(from);
+        for (const hostile_body &m : g.molecules)
+            g.exact.push_back(m.shape == LISTED ? reference::rigid_solution() : solution_of(m));
+        return g;
     }
     /** With the kernels that are in use: lists, whose positions are the library's. */
     group_of_bodies completed() const
@@ -85,7 +83,7 @@ struct group_of_bodies {
     }
 };
 
-void check(const group_of_bodies &given, molecule_tally &sum)
+void check(const group_of_bodies &given, tally &sum)
 {
     const group_of_bodies g = given.completed();
     std::vector<molecule_verdict> verdicts(g.molecules.size());
@@ -94,12 +92,13 @@ void check(const group_of_bodies &given, molecule_tally &sum)
         const hostile_body &m = g.molecules[k];
         molecule_facts facts;
         verdicts[k].add(check_alone(m, g.exact[k], facts));
-        if (!sum.add(m.shape, m.n_bonds(), m.seed, facts, verdicts[k])) continue;
+        sum.add(m.shape, {m.n_bonds(), m.seed, facts.regular, facts.promised, facts.condition}, verdicts[k]);
+        if (!verdicts[k].exceeded()) continue;
         std::printf(
             "molecule %llu (%s), %zu atoms, %lld bonds, least pivot %.1Le:%s repeat with HOLONOMIC_ISA=%s "
             "tests/stress/stress_bodies --group %llu\n",
             number(m.seed), m.words().c_str(), m.p.n_atoms(), static_cast<long long>(m.n_bonds()), facts.least_pivot,
-            exceeded_words(verdicts[k]).c_str(), hol_instruction_set(), number(g.first));
+            verdicts[k].words().c_str(), hol_instruction_set(), number(g.first));
     }
 }
 
@@ -124,67 +123,16 @@ int check_seed(std::uint64_t seed)
     v.add(verdicts.back());
     std::printf("%llu: %s; %zu atoms, %lld bonds, least pivot %.2Le\n", number(seed), m.words().c_str(), m.p.n_atoms(),
                 static_cast<long long>(m.n_bonds()), facts.least_pivot);
-    for (int q = 0; q < M_QUANTITIES; ++q) {
-        const long double ratio = v.ratio[static_cast<std::size_t>(q)];
-        if (ratio >= 0) std::printf("%-14s %12.3Lg of its bound\n", molecule_quantity_name(q), ratio);
-    }
-    return !exceeded_words(v).empty();
-}
-
-int run(const soak_options &options, double percent)
-{
-    const std::vector<std::string> sets = sets_of_kernels();
-    shared_tallies<molecule_tally> tallies(options.workers, sets.size());
-    std::vector<group_of_bodies> batch;
-    soak_work work;
-    work.prepare = [&](std::uint64_t first) {
-        batch.emplace_back(first);
-        batch.back().solve();
-    };
-    work.check = [&](unsigned worker, std::size_t set) {
-        for (const group_of_bodies &g : batch) check(g, tallies.of(worker, set));
-    };
-    work.clear = [&] { batch.clear(); };
-    work.progress = [&] {
-        std::int64_t molecules = 0, exceeded = 0;
-        for (const molecule_tally &t : tallies.of_all_sets())
-            for (const auto &c : t.classes) molecules += c.molecules, exceeded += c.exceeded;
-        std::fprintf(stderr, "%lld molecules with bodies, %lld above a bound\n", static_cast<long long>(molecules),
-                     static_cast<long long>(exceeded));
-    };
-    work.repeat = "tests/stress/stress_bodies --group";
-    const int lost = soak(options, sets, work);
-    const std::vector<molecule_tally> of_set = tallies.of_all_sets();
-    print(body_class_name, LISTED + 1, sets, of_set);
-    if (lost > 0) std::printf("stress: %d processes ended before their time\n", lost);
-    bool within = lost == 0;
-    for (const molecule_tally &t : of_set)
-        within = within && t.within(percent < 0 ? 1 : largest_excess, percent < 0 ? 0 : percent / 100);
-    return within ? 0 : 1;
+    v.print();
+    return v.exceeded();
 }
 
 }  // namespace
 
 int main(int argc, char **argv)
 {
-    const auto integer = [&](int i, long long otherwise) { return argc > i ? std::atoll(argv[i]) : otherwise; };
-    if (argc >= 3 && std::strcmp(argv[1], "--seed") == 0) {
-        int exceed = 0;
-        for (int k = 2; k < argc; ++k) exceed += check_seed(std::strtoull(argv[k], nullptr, 10));
-        return exceed > 0;
-    }
-    if (argc == 3 && std::strcmp(argv[1], "--group") == 0)
-        return run({1e-9, std::strtoull(argv[2], nullptr, 10), 1}, -1);
-    soak_options options;
-    options.seconds = argc >= 2 ? std::atof(argv[1]) : 0;
-    if (!(options.seconds > 0) || argc > 5) {
-        std::fprintf(stderr,
-                     "usage: stress_bodies SECONDS [FIRST [PROCESSES [PERCENT]]] | --group FIRST | "
-                     "--seed NUMBER...\n");
-        return 2;
-    }
-    options.first = static_cast<std::uint64_t>(integer(2, 1));
-    options.workers =
-        static_cast<unsigned>(std::max(1LL, integer(3, static_cast<long long>(std::thread::hardware_concurrency()))));
-    return run(options, argc >= 5 ? std::atof(argv[4]) : -1);
+    const harness<group_of_bodies, tally> bodies{
+        "stress_bodies", "--group", {body_class_name, LISTED + 1, "molecule"}, group_of_bodies::solved, check, nullptr};
+    return harness_main({argc, argv}, 2, "SECONDS [FIRST [PROCESSES [PERCENT]]] | --group FIRST | --seed NUMBER...",
+                        bodies, check_seed);
 }

@@ -11,26 +11,21 @@
  *         these molecules, among those of a run from number 1 on.
  * Exit status 0: everything within its bounds; 1: something is not; 2: wrong usage.
  */
-#include <algorithm>
 #include <cstdio>
-#include <cstdlib>
-#include <cstring>
 #include <string>
-#include <thread>
 #include <vector>
 
+#include "harness.hpp"
 #include "molecule_checks.hpp"
-#include "molecule_tally.hpp"
 #include "molecule_text.hpp"
 #include "random.h"
-#include "soak.hpp"
 
 using namespace stress;
 
 namespace
 {
 
-constexpr long double largest_excess = 3;
+using tally = tally_of<molecule_quantity>;
 
 unsigned long long number(std::uint64_t n)
 {
@@ -76,13 +71,15 @@ struct group_of_molecules {
         for (std::uint64_t k = 0; k < size; ++k)
             molecules.push_back(siblings ? make_sibling(one, first + k) : make_hostile_molecule(first + k));
     }
-    void solve()
+    static group_of_molecules solved(std::uint64_t from)
     {
-        for (const hostile_molecule &m : molecules) exact.emplace_back(m);
+        group_of_molecules g(from);
+        for (const hostile_molecule &m : g.molecules) g.exact.emplace_back(m);
+        return g;
     }
 };
 
-void check(const group_of_molecules &g, const std::string &directory, molecule_tally &sum)
+void check(const group_of_molecules &g, const std::string &directory, tally &sum)
 {
     std::vector<molecule_verdict> verdicts(g.molecules.size());
     check_invariances(g.molecules, g.first + 1, verdicts);
@@ -90,8 +87,9 @@ void check(const group_of_molecules &g, const std::string &directory, molecule_t
         const hostile_molecule &m = g.molecules[k];
         molecule_facts facts;
         verdicts[k].add(check_alone(m, g.exact[k], facts));
-        if (!sum.add(m.shape, m.n_bonds(), m.seed, facts, verdicts[k])) continue;
-        const std::string words = exceeded_words(verdicts[k]);
+        sum.add(m.shape, {m.n_bonds(), m.seed, facts.regular, facts.promised, facts.condition}, verdicts[k]);
+        if (!verdicts[k].exceeded()) continue;
+        const std::string words = verdicts[k].words();
         std::printf(
             "molecule %llu, %lld bonds, condition number %.1Le, least pivot %.1Le:%s repeat with "
             "HOLONOMIC_ISA=%s tests/stress/stress_molecules --group %llu\n",
@@ -115,69 +113,24 @@ int check_seed(std::uint64_t seed)
     std::printf("%llu: %s; %lld atoms, %lld bonds, condition number %.2Le, least pivot %.2Le\n", number(seed),
                 m.words().c_str(), static_cast<long long>(m.n_atoms()), static_cast<long long>(m.n_bonds()),
                 facts.condition, facts.least_pivot);
-    bool exceeds = false;
-    for (int q = 0; q < M_QUANTITIES; ++q) {
-        const long double ratio = v.ratio[static_cast<std::size_t>(q)];
-        if (ratio >= 0) std::printf("%-14s %12.3Lg of its bound\n", molecule_quantity_name(q), ratio);
-        exceeds = exceeds || (ratio > 1 && !is_information(q));
-    }
-    return exceeds;
-}
-
-int run(const soak_options &options, const std::string &directory, double percent)
-{
-    const std::vector<std::string> sets = sets_of_kernels();
-    shared_tallies<molecule_tally> tallies(options.workers, sets.size());
-    std::vector<group_of_molecules> batch;
-    soak_work work;
-    work.prepare = [&](std::uint64_t first) {
-        batch.emplace_back(first);
-        batch.back().solve();
-    };
-    work.check = [&](unsigned worker, std::size_t set) {
-        for (const group_of_molecules &g : batch) check(g, directory, tallies.of(worker, set));
-    };
-    work.clear = [&] { batch.clear(); };
-    work.progress = [&] {
-        std::int64_t molecules = 0, exceeded = 0;
-        for (const molecule_tally &t : tallies.of_all_sets())
-            for (const auto &c : t.classes) molecules += c.molecules, exceeded += c.exceeded;
-        std::fprintf(stderr, "%lld molecules, %lld above a bound\n", static_cast<long long>(molecules),
-                     static_cast<long long>(exceeded));
-    };
-    work.repeat = "tests/stress/stress_molecules --group";
-    const int lost = soak(options, sets, work);
-    const std::vector<molecule_tally> of_set = tallies.of_all_sets();
-    print(class_name, N_CLASSES, sets, of_set);
-    if (lost > 0) std::printf("stress: %d processes ended before their time\n", lost);
-    bool within = lost == 0;
-    for (const molecule_tally &t : of_set)
-        within = within && t.within(percent < 0 ? 1 : largest_excess, percent < 0 ? 0 : percent / 100);
-    return within ? 0 : 1;
+    v.print();
+    return v.exceeded();
 }
 
 }  // namespace
 
 int main(int argc, char **argv)
 {
-    const auto integer = [&](int i, long long otherwise) { return argc > i ? std::atoll(argv[i]) : otherwise; };
-    if (argc >= 3 && std::strcmp(argv[1], "--seed") == 0) {
-        int exceed = 0;
-        for (int k = 2; k < argc; ++k) exceed += check_seed(std::strtoull(argv[k], nullptr, 10));
-        return exceed > 0;
-    }
-    if (argc == 3 && std::strcmp(argv[1], "--group") == 0)
-        return run({1e-9, static_cast<std::uint64_t>(integer(2, 1)), 1}, "", -1);
-    soak_options options;
-    options.seconds = argc >= 2 ? std::atof(argv[1]) : 0;
-    if (!(options.seconds > 0) || argc > 6) {
-        std::fprintf(stderr,
-                     "usage: stress_molecules SECONDS [DIRECTORY [FIRST [PROCESSES [PERCENT]]]] | --group FIRST | "
-                     "--seed NUMBER...\n");
-        return 2;
-    }
-    options.first = static_cast<std::uint64_t>(integer(3, 1));
-    options.workers =
-        static_cast<unsigned>(std::max(1LL, integer(4, static_cast<long long>(std::thread::hardware_concurrency()))));
-    return run(options, argc >= 3 ? argv[2] : "", argc >= 6 ? std::atof(argv[5]) : -1);
+    const arguments given{argc, argv};
+    const std::string directory = given.is(1, "--group") ? "" : given.text(2);
+    const harness<group_of_molecules, tally> molecules{
+        "stress_molecules",
+        "--group",
+        {class_name, N_CLASSES, "molecule"},
+        group_of_molecules::solved,
+        [&](const group_of_molecules &g, tally &sum) { check(g, directory, sum); },
+        nullptr};
+    return harness_main(given, 3,
+                        "SECONDS [DIRECTORY [FIRST [PROCESSES [PERCENT]]]] | --group FIRST | --seed NUMBER...",
+                        molecules, check_seed);
 }
