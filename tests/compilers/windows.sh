@@ -96,7 +96,7 @@ packed() {
         grep -q '^tension 1.000 forces 1.000 -1.000$' printed || exit 1
         compiler=$(command -v $target-gfortran-posix || command -v $target-gfortran) || exit 0
         "$compiler" "$top/tests/install/programs/rotor_free.f90" -I"$(dirname "$(find "$prefix" -name holonomic.mod)")" -L"$prefix/lib" \
-            -lholonomic_fortran -lholonomic -static -o rotor_f.exe || exit 1
+            -lholonomic_fortran "$prefix/lib/libholonomic.dll.a" -static -o rotor_f.exe || exit 1
         "$wine" rotor_f.exe | tr -d '\r' | tee printed
         grep -q '^tension 1.000 forces 1.000 -1.000$' printed
     ) || return 1
