@@ -4,6 +4,7 @@
 
 #include <holonomic.h>
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -21,6 +22,11 @@ public:
                double tolerance) override;
     void applyToVelocities(std::vector<Vec3> &positions, std::vector<Vec3> &velocities,
                            std::vector<double> &inverseMasses, double tolerance) override;
+
+    // For a platform that leaves some of the molecules to the library.
+    const hol_chains *chains() const { return molecules.get(); }
+    std::vector<int> atomsOf(std::int64_t molecule) const;
+    void setActive(const std::vector<std::int64_t> &which);
 
 private:
     void addConstraints(const System &system);
