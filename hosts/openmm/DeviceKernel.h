@@ -17,8 +17,8 @@ public:
 
     // Takes the place of the platform's own constraints.
     virtual void initialize(ContextImpl &context, int nThreads) = 0;
-    // Forces are computed: an occasion to tell of molecules that could not be solved. With the energy the host waits for
-    // the device anyway.
+    // Forces are computed: an occasion to tell of molecules that could not be solved. With the energy the host waits
+    // for the device anyway.
     virtual void forcesAreComputed(bool withEnergy) = 0;
 };
 

@@ -178,9 +178,10 @@ void DeviceConstraints::check() {
     const std::int64_t number = numbers[failed[0]];
     std::string words;
     for (int place : host.atomsOf(number)) words += (words.empty() ? " " : ", ") + std::to_string(atomOf[place]);
-    throw OpenMMException("holonomic: the constraints of the molecule of atoms" + words + " could not be solved in step " +
-                          std::to_string(since + call) + ": the step is too long, or a coordinate is not finite" +
-                          (failed.size() > 1 ? "; so it is with " + std::to_string(failed.size() - 1) + " others" : ""));
+    throw OpenMMException(
+        "holonomic: the constraints of the molecule of atoms" + words + " could not be solved in step " +
+        std::to_string(since + call) + ": the step is too long, or a coordinate is not finite" +
+        (failed.size() > 1 ? "; so it is with " + std::to_string(failed.size() - 1) + " others" : ""));
 }
 
 void DeviceConstraints::solveOnHost(bool toVelocities, const std::vector<std::int64_t> &which) {

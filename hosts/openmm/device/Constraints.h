@@ -37,12 +37,12 @@ private:
     ComputeContext &context;
     HolonomicAlgorithm host;
     std::vector<double> inverseMasses;
-    std::vector<std::int64_t> left;      // molecules for the host
-    std::vector<std::int64_t> numbers;   // of the molecules on the device, by slot; -1: none
-    std::vector<int> atomOf;             // the atom that stands at each place of the device's arrays
+    std::vector<std::int64_t> left;     // molecules for the host
+    std::vector<std::int64_t> numbers;  // of the molecules on the device, by slot; -1: none
+    std::vector<int> atomOf;            // the atom that stands at each place of the device's arrays
     ComputeArray groups, atoms, parameters, failures, anyFailure;
     ComputeKernel positionsKernel, velocitiesKernel;
-    long long firstStep = 0;             // since the last check
+    long long firstStep = 0;  // since the last check
 };
 
 }  // namespace OpenMM

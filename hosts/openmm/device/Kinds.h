@@ -19,9 +19,7 @@ struct Kind {
     // and what the elimination fills.
     std::vector<std::pair<int, int>> entries;
 
-    bool operator<(const Kind &other) const {
-        return std::tie(nAtoms, bonds) < std::tie(other.nAtoms, other.bonds);
-    }
+    bool operator<(const Kind &other) const { return std::tie(nAtoms, bonds) < std::tie(other.nAtoms, other.bonds); }
 };
 
 struct Molecule {

@@ -194,8 +194,8 @@ std::string Writer::velocities(int number) {
     out << "mixed first = 0, scale = 0;\nfor (int pass = 0; pass < 3; ++pass) {\nmixed error = 0;\n";
     for (int k = 0; k < nBonds(); ++k) {
         const auto &bond = kind.bonds[k];
-        out << "mixed g" << k << " = -dot(s" << k << ", u" << bond.first << " - u" << bond.second << "); error += g" << k
-            << "*g" << k << ";\n";
+        out << "mixed g" << k << " = -dot(s" << k << ", u" << bond.first << " - u" << bond.second << "); error += g"
+            << k << "*g" << k << ";\n";
     }
     out << "if (pass == 0) {\nfirst = error;\n";
     for (int k = 0; k < nBonds(); ++k)
@@ -215,7 +215,8 @@ std::string kernel(const char *name, std::size_t nKinds) {
     text.replace(text.find('@'), 1, name);
     for (std::size_t k = 0; k < nKinds; ++k) {
         const std::string number = std::to_string(k);
-        text += "case " + number + ": solved = solve" + name + number + "(molecule, parameters, state, THE_POSITIONS); break;\n";
+        text += "case " + number + ": solved = solve" + name + number +
+                "(molecule, parameters, state, THE_POSITIONS); break;\n";
     }
     return text + loopEnd;
 }
@@ -225,7 +226,8 @@ std::string kernel(const char *name, std::size_t nKinds) {
 std::string kernelSource(const std::vector<MoleculesOfKind> &kinds) {
     std::string text = common + std::string("#define WIDTH ") + std::to_string(groupWidth) + "\n";
     for (std::size_t k = 0; k < kinds.size(); ++k)
-        text += Writer(kinds[k].kind).positions(static_cast<int>(k)) + Writer(kinds[k].kind).velocities(static_cast<int>(k));
+        text += Writer(kinds[k].kind).positions(static_cast<int>(k)) +
+                Writer(kinds[k].kind).velocities(static_cast<int>(k));
     return text + kernel("Positions", kinds.size()) + kernel("Velocities", kinds.size());
 }
 
