@@ -14,7 +14,8 @@ using namespace OpenMM;
 namespace {
 
 // Beyond so many entries of a molecule's matrix (a tree of some 150 bonds) the host is the better place.
-constexpr std::size_t maxEntries = 600;
+constexpr std::size_t maxEntries = 300;
+constexpr std::size_t mostBondsOfSmall = 6;
 
 struct ReorderedAtoms : ComputeContext::ReorderListener {
     explicit ReorderedAtoms(std::function<void()> what) : tell(std::move(what)) {}
@@ -118,35 +119,48 @@ void DeviceConstraints::takeMolecules(const System &system, std::vector<Molecule
     context.clearBuffer(failures);
     context.clearBuffer(anyFailure);
 
-    const ComputeProgram program = context.compileProgram(kernelSource(sorted));
-    positionsKernel = program->createKernel("solvePositions");
-    velocitiesKernel = program->createKernel("solveVelocities");
-    for (auto *kernel : {&positionsKernel, &velocitiesKernel}) {
-        (*kernel)->addArg(static_cast<int>(numbers.size()));
-        for (ComputeArray *array : {&groups, &atoms, &parameters, &failures, &anyFailure}) (*kernel)->addArg(*array);
-        (*kernel)->addArg(1);
-        if (kernel == &positionsKernel)
-            (*kernel)->addArg(context.getIntegrationUtilities().getPosDelta());
-        else
-            (*kernel)->addArg(context.getVelm());
-        (*kernel)->addArg(context.getPosq());
-        if (context.getUseMixedPrecision()) (*kernel)->addArg(context.getPosqCorrection());
+    // A kernel takes the registers of its largest molecule, so that the small ones, water above all, have one of their
+    // own.
+    const std::size_t nLarge = std::count_if(sorted.begin(), sorted.end(), [](const MoleculesOfKind &one) {
+        return one.kind.bonds.size() > mostBondsOfSmall;
+    });
+    addLaunch(sorted, 0, nLarge, 0);
+    addLaunch(sorted, nLarge, sorted.size(), launches.empty() ? 0 : launches.back().lastSlot);
+}
+
+void DeviceConstraints::addLaunch(const std::vector<MoleculesOfKind> &sorted, std::size_t first, std::size_t last,
+                                  int firstSlot) {
+    if (first == last) return;
+    int lastSlot = firstSlot;
+    for (std::size_t kind = first; kind < last; ++kind)
+        lastSlot += static_cast<int>((sorted[kind].molecules.size() + groupWidth - 1) / groupWidth * groupWidth);
+    const ComputeProgram program = context.compileProgram(kernelSource(sorted, first, last));
+    launches.push_back(
+        {program->createKernel("solvePositions"), program->createKernel("solveVelocities"), firstSlot, lastSlot});
+    for (bool velocities : {false, true}) {
+        const ComputeKernel &kernel = launches.back().kernel(velocities);
+        kernel->addArg(firstSlot);
+        kernel->addArg(lastSlot);
+        for (ComputeArray *array : {&groups, &atoms, &parameters, &failures, &anyFailure}) kernel->addArg(*array);
+        kernel->addArg(1);
+        kernel->addArg(velocities ? context.getVelm() : context.getIntegrationUtilities().getPosDelta());
+        kernel->addArg(context.getPosq());
+        if (context.getUseMixedPrecision()) kernel->addArg(context.getPosqCorrection());
     }
 }
 
 void DeviceConstraints::apply(bool toVelocities) {
     ContextSelector selector(context);
-    if (!numbers.empty()) {
-        const ComputeKernel &kernel = toVelocities ? velocitiesKernel : positionsKernel;
-        kernel->setArg(6, static_cast<int>(context.getStepCount() - firstStep) + 1);
-        kernel->execute(static_cast<int>(numbers.size()), groupWidth);
-        if (outsideOfSteps) {
-            int call;
-            const std::vector<int> failed = failedSlots(call);
-            std::vector<std::int64_t> which;
-            for (int slot : failed) which.push_back(numbers[slot]);
-            if (!which.empty()) solveOnHost(toVelocities, which);
-        }
+    for (const Launch &launch : launches) {
+        const ComputeKernel &kernel = launch.kernel(toVelocities);
+        kernel->setArg(7, static_cast<int>(context.getStepCount() - firstStep) + 1);
+        kernel->execute(launch.lastSlot - launch.firstSlot, groupWidth);
+    }
+    if (outsideOfSteps && !launches.empty()) {
+        int call;
+        std::vector<std::int64_t> which;
+        for (int slot : failedSlots(call)) which.push_back(numbers[slot]);
+        if (!which.empty()) solveOnHost(toVelocities, which);
     }
     if (!left.empty()) solveOnHost(toVelocities, left);
 }

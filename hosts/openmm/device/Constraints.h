@@ -1,4 +1,4 @@
-// The constraints of a System on a device: two kernels, and the library for what they leave.
+// The constraints of a System on a device: kernels, and the library for what they leave.
 #ifndef OPENMM_HOLONOMIC_DEVICE_CONSTRAINTS_H_
 #define OPENMM_HOLONOMIC_DEVICE_CONSTRAINTS_H_
 
@@ -29,6 +29,7 @@ public:
 
 private:
     void findAtoms();
+    void addLaunch(const std::vector<MoleculesOfKind> &sorted, std::size_t first, std::size_t last, int firstSlot);
     void takeMolecules(const System &system, std::vector<MoleculesOfKind> sorted);
     // The molecules that failed in the first call in which one did, by their slots; forgets them.
     std::vector<int> failedSlots(int &firstCall);
@@ -41,7 +42,12 @@ private:
     std::vector<std::int64_t> numbers;  // of the molecules on the device, by slot; -1: none
     std::vector<int> atomOf;            // the atom that stands at each place of the device's arrays
     ComputeArray groups, atoms, parameters, failures, anyFailure;
-    ComputeKernel positionsKernel, velocitiesKernel;
+    struct Launch {
+        ComputeKernel positions, velocities;
+        int firstSlot, lastSlot;
+        const ComputeKernel &kernel(bool ofVelocities) const { return ofVelocities ? velocities : positions; }
+    };
+    std::vector<Launch> launches;
     long long firstStep = 0;  // since the last check
 };
 

@@ -30,10 +30,10 @@ const char common[] = R"(
 // A loop over groups: the platform may start fewer threads than were asked for. `failures` keeps for each molecule the
 // call that it failed in first, from 1 on; nothing depends on which thread comes first.
 const char loop[] = R"(
-KERNEL void solve@(int nSlots, GLOBAL const int2* RESTRICT groups, GLOBAL const int* RESTRICT atoms,
+KERNEL void solve@(int firstSlot, int lastSlot, GLOBAL const int2* RESTRICT groups, GLOBAL const int* RESTRICT atoms,
         GLOBAL const mixed* RESTRICT parameters, GLOBAL int* RESTRICT failures, GLOBAL int* RESTRICT anyFailure,
         int call, GLOBAL mixed4* RESTRICT state, POSITIONS) {
-    for (int slot = GLOBAL_ID; slot < nSlots; slot += GLOBAL_SIZE) {
+    for (int slot = firstSlot + GLOBAL_ID; slot < lastSlot; slot += GLOBAL_SIZE) {
         const int2 group = groups[slot / WIDTH];
         GLOBAL const int* RESTRICT molecule = atoms + group.y + slot % WIDTH;
         if (molecule[0] < 0)
@@ -210,10 +210,10 @@ std::string Writer::velocities(int number) {
     return out.str();
 }
 
-std::string kernel(const char *name, std::size_t nKinds) {
+std::string kernel(const char *name, std::size_t first, std::size_t last) {
     std::string text = loop;
     text.replace(text.find('@'), 1, name);
-    for (std::size_t k = 0; k < nKinds; ++k) {
+    for (std::size_t k = first; k < last; ++k) {
         const std::string number = std::to_string(k);
         text += "case " + number + ": solved = solve" + name + number +
                 "(molecule, parameters, state, THE_POSITIONS); break;\n";
@@ -223,12 +223,12 @@ std::string kernel(const char *name, std::size_t nKinds) {
 
 }  // namespace
 
-std::string kernelSource(const std::vector<MoleculesOfKind> &kinds) {
+std::string kernelSource(const std::vector<MoleculesOfKind> &kinds, std::size_t first, std::size_t last) {
     std::string text = common + std::string("#define WIDTH ") + std::to_string(groupWidth) + "\n";
-    for (std::size_t k = 0; k < kinds.size(); ++k)
+    for (std::size_t k = first; k < last; ++k)
         text += Writer(kinds[k].kind).positions(static_cast<int>(k)) +
                 Writer(kinds[k].kind).velocities(static_cast<int>(k));
-    return text + kernel("Positions", kinds.size()) + kernel("Velocities", kinds.size());
+    return text + kernel("Positions", first, last) + kernel("Velocities", first, last);
 }
 
 }  // namespace OpenMM

@@ -16,7 +16,8 @@ constexpr int groupWidth = 64;
 //     groups      of groupWidth molecules of one kind: the kind, and where its atoms begin
 //     atoms       [nAtoms + 1][groupWidth] of each group; the last row says where the molecule's parameters begin
 //     parameters  inverse masses of the atoms, then inverse squares of the bonds' lengths
-std::string kernelSource(const std::vector<MoleculesOfKind> &kinds);
+// The kernels are for the kinds from number first to number last - 1.
+std::string kernelSource(const std::vector<MoleculesOfKind> &kinds, std::size_t first, std::size_t last);
 
 }  // namespace OpenMM
 
