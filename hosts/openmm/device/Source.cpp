@@ -66,15 +66,17 @@ private:
         return "m" + std::to_string(row) + "_" + std::to_string(column);
     }
     void begin(const char *name, int number, const char *state);
-    void matrix();
-    void factorize();
-    void solve();
+    void entry(int row, int column);
+    void factorize(bool withRightSide);
+    void forward(int k);
+    void backward();
     void move();
     void store(const char *state, const char *last);
 
     const Kind &kind;
     std::vector<std::vector<int>> later;  // bonds that are eliminated after each and have an entry with it
     bool symmetric = false;
+    std::set<std::string> written;
     std::ostringstream out;
 };
 
@@ -92,32 +94,29 @@ void Writer::begin(const char *name, int number, const char *state) {
 }
 
 // Entry (k, l) is d_k . s_l times the inverse masses of the atoms that the two bonds share, negative where one begins
-// and the other ends.
-void Writer::matrix() {
-    const auto atoms = [&](int k) { return std::set<int>{kind.bonds[k].first, kind.bonds[k].second}; };
-    const auto write = [&](int row, int column) {
-        const auto &one = kind.bonds[row], &other = kind.bonds[column];
-        out << "mixed " << m(row, column) << " = ";
-        bool shared = false;
-        for (int atom : atoms(row))
-            if (atoms(column).count(atom)) {
-                out << ((one.first == atom) == (other.first == atom) ? "+" : "-") << "w" << atom;
-                shared = true;
-            }
-        if (shared) out << ";\n" << m(row, column) << " *= dot(d" << row << ", s" << column << ");\n";
-        if (!shared) out << "0;\n";
-    };
-    for (int k = 0; k < nBonds(); ++k) {
-        write(k, k);
-        for (int l : later[k]) {
-            write(k, l);
-            if (!symmetric) write(l, k);
-        }
-    }
+// and the other ends. It is written where it is needed first, so that few are alive at a time.
+void Writer::entry(int row, int column) {
+    if (!written.insert(m(row, column)).second) return;
+    const auto &one = kind.bonds[row], &other = kind.bonds[column];
+    std::string shared;
+    for (int atom : std::set<int>{one.first, one.second})
+        if (atom == other.first || atom == other.second)
+            shared += ((one.first == atom) == (other.first == atom) ? "+w" : "-w") + std::to_string(atom);
+    out << "mixed " << m(row, column) << " = ";
+    if (shared.empty())
+        out << "0;\n";
+    else
+        out << "(" << shared << ")*dot(d" << row << ", s" << column << ");\n";
 }
 
-void Writer::factorize() {
+void Writer::factorize(bool withRightSide) {
     for (int k = 0; k < nBonds(); ++k) {
+        entry(k, k);
+        for (int row : later[k]) {
+            entry(row, k);
+            entry(k, row);
+            for (int column : later[k]) entry(row, column);
+        }
         out << "const mixed i" << k << " = 1/" << m(k, k) << ";\n";
         for (int column : later[k]) {
             out << "{ const mixed t = i" << k << "*" << m(k, column) << ";";
@@ -125,16 +124,17 @@ void Writer::factorize() {
                 if (!symmetric || row <= column) out << " " << m(row, column) << " -= " << m(row, k) << "*t;";
             out << " }\n";
         }
+        if (withRightSide) forward(k);
     }
 }
 
-void Writer::solve() {
-    for (int k = 0; k < nBonds(); ++k) {
-        if (later[k].empty()) continue;
-        out << "{ const mixed t = i" << k << "*g" << k << ";";
-        for (int row : later[k]) out << " g" << row << " -= " << m(row, k) << "*t;";
-        out << " }\n";
-    }
+void Writer::forward(int k) {
+    out << "{ const mixed t = i" << k << "*g" << k << ";";
+    for (int row : later[k]) out << " g" << row << " -= " << m(row, k) << "*t;";
+    out << " }\n";
+}
+
+void Writer::backward() {
     for (int k = nBonds() - 1; k >= 0; --k) {
         out << "g" << k << " = i" << k << "*(g" << k;
         for (int column : later[k]) out << " - " << m(k, column) << "*g" << column;
@@ -175,9 +175,8 @@ std::string Writer::positions(int number) {
     out << "if (error <= rounding || (error <= 1000*rounding && 4*error >= before && iteration > 0)) {\n";
     store("posDelta", ".w");
     out << "return 1;\n}\nbefore = error;\n";
-    matrix();
-    factorize();
-    solve();
+    factorize(true);
+    backward();
     move();
     out << "}\nreturn 0;\n}\n";
     return out.str();
@@ -189,8 +188,7 @@ std::string Writer::velocities(int number) {
     begin("Velocities", number, "velm");
     for (int i = 0; i < kind.nAtoms; ++i) out << "const mixed w" << i << " = t" << i << ".w;\n";
     for (int k = 0; k < nBonds(); ++k) out << "const mixed3 d" << k << " = s" << k << ";\n";
-    matrix();
-    factorize();
+    factorize(false);
     out << "mixed first = 0, scale = 0;\nfor (int pass = 0; pass < 3; ++pass) {\nmixed error = 0;\n";
     for (int k = 0; k < nBonds(); ++k) {
         const auto &bond = kind.bonds[k];
@@ -204,7 +202,8 @@ std::string Writer::velocities(int number) {
     out << "}\nif (pass == 2) {\nif (!(error <= 1e-6f*first + 4000*ROUNDING*ROUNDING*scale)) return 0;\n";
     store("velm", ".w");
     out << "return 1;\n}\n";
-    solve();
+    for (int k = 0; k < nBonds(); ++k) forward(k);
+    backward();
     move();
     out << "}\nreturn 0;\n}\n";
     return out.str();
