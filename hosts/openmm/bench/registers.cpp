@@ -43,11 +43,15 @@ typedef float mixed; typedef float3 mixed3; typedef float4 mixed4;
 #define RESTRICT restrict
 #define GLOBAL_ID (int)(64*__builtin_amdgcn_workgroup_id_x() + __builtin_amdgcn_workitem_id_x())
 #define GLOBAL_SIZE (64*4096)
+#define make_real3(x...) ((real3) (x))
 #define make_mixed3(x...) ((mixed3) (x))
 #define make_mixed4(x...) ((mixed4) (x))
 #define trimTo3(v) (v).xyz
 #define dot(a, b) product(a, b)
-inline __attribute__((always_inline)) mixed product(mixed3 a, mixed3 b) { return a.x*b.x + a.y*b.y + a.z*b.z; }
+#define PRODUCT(type, type3) \
+    inline __attribute__((always_inline, overloadable)) type product(type3 a, type3 b) { return a.x*b.x + a.y*b.y + a.z*b.z; }
+PRODUCT(float, float3)
+PRODUCT(double, double3)
 )");
     std::puts(text.c_str());
 }

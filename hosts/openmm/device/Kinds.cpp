@@ -58,17 +58,31 @@ std::vector<std::set<int>> bondsThatShareAtoms(int nAtoms, const Pairs &bonds) {
     return near;
 }
 
-// Puts the bonds of a Kind into the order of least degree, which fills nothing where there is no cycle, and notes the
-// entries. Gives the place of each bond in that order; empty where there are more than maxEntries entries.
+// How many pairs of a bond's neighbours get an entry when it is eliminated.
+int filled(const std::vector<std::set<int>> &near, int bond) {
+    int n = 0;
+    for (int one : near[bond])
+        for (int other : near[bond]) n += one < other && !near[one].count(other);
+    return n;
+}
+
+// Puts the bonds of a Kind into the order of least fill, which is none where there is no cycle, and notes the entries.
+// Gives the place of each bond in that order; empty where there are more than maxEntries entries.
 std::vector<int> eliminate(Kind &kind, std::size_t maxEntries) {
     auto near = bondsThatShareAtoms(kind.nAtoms, kind.bonds);
     const int n = static_cast<int>(near.size());
     std::vector<int> place(n, -1);
     Pairs ordered, entries;
     for (int step = 0; step < n; ++step) {
-        int next = -1;
-        for (int k = 0; k < n; ++k)
-            if (place[k] < 0 && (next < 0 || near[k].size() < near[next].size())) next = k;
+        int next = -1, least = 0;
+        for (int k = 0; k < n; ++k) {
+            if (place[k] >= 0) continue;
+            const int fill = filled(near, k);
+            if (next < 0 || fill < least) {
+                next = k;
+                least = fill;
+            }
+        }
         place[next] = step;
         ordered.push_back(kind.bonds[next]);
         for (int k : near[next]) {

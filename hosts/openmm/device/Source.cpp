@@ -7,7 +7,8 @@ namespace OpenMM {
 
 namespace {
 
-// What is the same for all kinds. Positions are the sum of two floats in mixed precision.
+// What is the same for all kinds. In mixed precision positions are the sum of two floats; residuals and displacements
+// are in doubles, the matrix and its factors, to which iterations are indifferent, in floats.
 const char common[] = R"(
 #ifdef USE_MIXED_PRECISION
 #define POSITIONS GLOBAL const real4* RESTRICT posq, GLOBAL const real4* RESTRICT posqCorrection
@@ -24,6 +25,7 @@ const char common[] = R"(
 #else
 #define ROUNDING 1.2e-7f
 #endif
+#define ROUNDED(v) make_real3((v).x, (v).y, (v).z)
 #define MAX_ITERATIONS 25
 )";
 
@@ -90,7 +92,8 @@ void Writer::begin(const char *name, int number, const char *state) {
             << "); const mixed3 x" << i << " = POSITION(a" << i << ");\n";
     }
     for (int k = 0; k < nBonds(); ++k)
-        out << "const mixed3 s" << k << " = x" << kind.bonds[k].first << " - x" << kind.bonds[k].second << ";\n";
+        out << "const mixed3 s" << k << " = x" << kind.bonds[k].first << " - x" << kind.bonds[k].second
+            << "; const real3 h" << k << " = ROUNDED(s" << k << ");\n";
 }
 
 // Entry (k, l) is d_k . s_l times the inverse masses of the atoms that the two bonds share, negative where one begins
@@ -102,11 +105,11 @@ void Writer::entry(int row, int column) {
     for (int atom : std::set<int>{one.first, one.second})
         if (atom == other.first || atom == other.second)
             shared += ((one.first == atom) == (other.first == atom) ? "+w" : "-w") + std::to_string(atom);
-    out << "mixed " << m(row, column) << " = ";
+    out << "real " << m(row, column) << " = ";
     if (shared.empty())
         out << "0;\n";
     else
-        out << "(" << shared << ")*dot(d" << row << ", s" << column << ");\n";
+        out << "(real) (" << shared << ")*dot(d" << row << ", h" << column << ");\n";
 }
 
 void Writer::factorize(bool withRightSide) {
@@ -117,9 +120,9 @@ void Writer::factorize(bool withRightSide) {
             entry(k, row);
             for (int column : later[k]) entry(row, column);
         }
-        out << "const mixed i" << k << " = 1/" << m(k, k) << ";\n";
+        out << "const real i" << k << " = 1/" << m(k, k) << ";\n";
         for (int column : later[k]) {
-            out << "{ const mixed t = i" << k << "*" << m(k, column) << ";";
+            out << "{ const real t = i" << k << "*" << m(k, column) << ";";
             for (int row : later[k])
                 if (!symmetric || row <= column) out << " " << m(row, column) << " -= " << m(row, k) << "*t;";
             out << " }\n";
@@ -129,7 +132,7 @@ void Writer::factorize(bool withRightSide) {
 }
 
 void Writer::forward(int k) {
-    out << "{ const mixed t = i" << k << "*g" << k << ";";
+    out << "{ const real t = i" << k << "*g" << k << ";";
     for (int row : later[k]) out << " g" << row << " -= " << m(row, k) << "*t;";
     out << " }\n";
 }
@@ -145,8 +148,8 @@ void Writer::backward() {
 void Writer::move() {
     for (int k = 0; k < nBonds(); ++k) {
         const auto &bond = kind.bonds[k];
-        out << "{ const mixed3 p = g" << k << "*s" << k << "; u" << bond.first << " += w" << bond.first << "*p; u"
-            << bond.second << " -= w" << bond.second << "*p; }\n";
+        out << "{ const mixed3 p = (mixed) g" << k << "*s" << k << "; u" << bond.first << " += w" << bond.first
+            << "*p; u" << bond.second << " -= w" << bond.second << "*p; }\n";
     }
 }
 
@@ -156,8 +159,8 @@ void Writer::store(const char *state, const char *last) {
             << ");\n";
 }
 
-// Newton's iteration for the multipliers of the bonds s before the step. What is to vanish is g = (1 - d.d/a^2) / 2.
-// It ends at the rounding, or near it where a step gains nothing more.
+// Newton's iteration for the multipliers of the bonds s before the step. What is to vanish is (1 - d.d/a^2) / 2. It
+// ends at the rounding, or near it where a step gains nothing more.
 std::string Writer::positions(int number) {
     symmetric = false;
     begin("Positions", number, "posDelta");
@@ -168,9 +171,9 @@ std::string Writer::positions(int number) {
         << "for (int iteration = 0; iteration < MAX_ITERATIONS; ++iteration) {\nmixed error = 0;\n";
     for (int k = 0; k < nBonds(); ++k) {
         const auto &bond = kind.bonds[k];
-        out << "mixed3 d" << k << " = s" << k << " + (u" << bond.first << " - u" << bond.second << "); mixed g" << k
-            << " = 0.5f - 0.5f*c" << k << "*dot(d" << k << ", d" << k << "); d" << k << " *= c" << k << "; error += g"
-            << k << "*g" << k << ";\n";
+        out << "real g" << k << "; real3 d" << k << "; { const mixed3 d = s" << k << " + (u" << bond.first << " - u"
+            << bond.second << "); const mixed e = 0.5f - 0.5f*c" << k << "*dot(d, d); error += e*e; g" << k << " = e; d"
+            << k << " = ROUNDED(c" << k << "*d); }\n";
     }
     out << "if (error <= rounding || (error <= 1000*rounding && 4*error >= before && iteration > 0)) {\n";
     store("posDelta", ".w");
@@ -182,26 +185,28 @@ std::string Writer::positions(int number) {
     return out.str();
 }
 
-// One solution and one refinement of it. What is left must be small against what there was, or rounding.
+// A solution and refinements of it, until they gain nothing more: one in single and double precision.
 std::string Writer::velocities(int number) {
     symmetric = true;
     begin("Velocities", number, "velm");
     for (int i = 0; i < kind.nAtoms; ++i) out << "const mixed w" << i << " = t" << i << ".w;\n";
-    for (int k = 0; k < nBonds(); ++k) out << "const mixed3 d" << k << " = s" << k << ";\n";
+    for (int k = 0; k < nBonds(); ++k) out << "const real3 d" << k << " = h" << k << ";\n";
     factorize(false);
-    out << "mixed first = 0, scale = 0;\nfor (int pass = 0; pass < 3; ++pass) {\nmixed error = 0;\n";
+    out << "mixed rounding = 0, before = 0;\n"
+        << "for (int pass = 0; pass < MAX_ITERATIONS; ++pass) {\nmixed error = 0;\n";
     for (int k = 0; k < nBonds(); ++k) {
         const auto &bond = kind.bonds[k];
-        out << "mixed g" << k << " = -dot(s" << k << ", u" << bond.first << " - u" << bond.second << "); error += g"
-            << k << "*g" << k << ";\n";
+        out << "real g" << k << "; { const mixed e = -dot(s" << k << ", u" << bond.first << " - u" << bond.second
+            << "); error += e*e; g" << k << " = e; }\n";
     }
-    out << "if (pass == 0) {\nfirst = error;\n";
+    out << "if (pass == 0) {\n";
     for (int k = 0; k < nBonds(); ++k)
         for (int atom : {kind.bonds[k].first, kind.bonds[k].second})
-            out << "scale += dot(s" << k << ", s" << k << ")*dot(u" << atom << ", u" << atom << ");\n";
-    out << "}\nif (pass == 2) {\nif (!(error <= 1e-6f*first + 4000*ROUNDING*ROUNDING*scale)) return 0;\n";
+            out << "rounding += dot(s" << k << ", s" << k << ")*dot(u" << atom << ", u" << atom << ");\n";
+    out << "rounding *= ROUNDING*ROUNDING;\n}\n"
+        << "if (error <= rounding/16 || (error <= 1000*rounding && 4*error >= before && pass > 0)) {\n";
     store("velm", ".w");
-    out << "return 1;\n}\n";
+    out << "return 1;\n}\nbefore = error;\n";
     for (int k = 0; k < nBonds(); ++k) forward(k);
     backward();
     move();
