@@ -1,6 +1,7 @@
 #include "Algorithm.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <cstring>
 #include <string>
 
@@ -47,20 +48,6 @@ void HolonomicAlgorithm::addConstraints(const System &system) {
     }
     if (lengths.empty()) return;
     ask(hol_chains_add_bonds(molecules.get(), static_cast<std::int64_t>(lengths.size()), pairs.data(), lengths.data()));
-}
-
-std::vector<int> HolonomicAlgorithm::atomsOf(std::int64_t molecule) const {
-    std::int64_t n;
-    ask(hol_chains_molecule(molecules.get(), molecule, nullptr, &n, nullptr));
-    std::vector<std::int64_t> atoms(n);
-    ask(hol_chains_atoms(molecules.get(), molecule, atoms.data()));
-    return std::vector<int>(atoms.begin(), atoms.end());
-}
-
-void HolonomicAlgorithm::setActive(const std::vector<std::int64_t> &which) {
-    std::vector<unsigned char> active(hol_chains_n_molecules(molecules.get()), 0);
-    for (std::int64_t molecule : which) active[molecule] = 1;
-    ask(hol_chains_set_active(molecules.get(), active.data()));
 }
 
 bool HolonomicAlgorithm::takeMasses(const std::vector<double> &inverse) {

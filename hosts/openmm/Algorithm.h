@@ -4,7 +4,6 @@
 
 #include <holonomic.h>
 
-#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -24,9 +23,7 @@ public:
                            std::vector<double> &inverseMasses, double tolerance) override;
 
     // For a platform that leaves some of the molecules to the library.
-    const hol_chains *chains() const { return molecules.get(); }
-    std::vector<int> atomsOf(std::int64_t molecule) const;
-    void setActive(const std::vector<std::int64_t> &which);
+    hol_chains *chains() { return molecules.get(); }
 
 private:
     void addConstraints(const System &system);

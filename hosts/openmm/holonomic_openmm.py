@@ -5,7 +5,7 @@
     simulation = Simulation(topology, system, integrator, Platform.getPlatformByName("CPU"))
 
 Constraints are those of the System, whatever their shapes; they are right to the rounding of the coordinates, and the integrator's
-constraint tolerance is not looked at. Platforms CPU and Reference; others refuse.
+constraint tolerance is not looked at. Platforms CPU, Reference and OpenCL; others refuse.
 """
 
 import ctypes

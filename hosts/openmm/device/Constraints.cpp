@@ -47,6 +47,25 @@ void write(ArrayInterface &array, const std::vector<double> &values) {
     ofDoubles(array) ? uploaded<double>(array, values) : uploaded<float>(array, values);
 }
 
+void ask(int status) {
+    if (status != HOL_OK) throw OpenMMException(std::string("holonomic: ") + hol_error_message());
+}
+
+std::vector<int> atomsOf(const hol_chains *chains, std::int64_t molecule) {
+    std::int64_t n;
+    ask(hol_chains_molecule(chains, molecule, nullptr, &n, nullptr));
+    std::vector<std::int64_t> atoms(n);
+    ask(hol_chains_atoms(chains, molecule, atoms.data()));
+    return std::vector<int>(atoms.begin(), atoms.end());
+}
+
+// The next call is about these molecules alone.
+void activate(hol_chains *chains, const std::vector<std::int64_t> &which) {
+    std::vector<unsigned char> active(hol_chains_n_molecules(chains), 0);
+    for (std::int64_t molecule : which) active[molecule] = 1;
+    ask(hol_chains_set_active(chains, active.data()));
+}
+
 std::vector<double> inverseMassesOf(const System &system) {
     std::vector<double> inverse(system.getNumParticles());
     for (int i = 0; i < system.getNumParticles(); ++i) {
@@ -74,7 +93,7 @@ void DeviceConstraints::findAtoms() {
     atomOf.assign(context.getAtomIndex().begin(), context.getAtomIndex().begin() + context.getNumAtoms());
 }
 
-void DeviceConstraints::takeMolecules(const System &system, std::vector<MoleculesOfKind> sorted) {
+void DeviceConstraints::takeMolecules(const System &system, const std::vector<MoleculesOfKind> &sorted) {
     std::vector<mm_int2> groupData;
     std::vector<int> atomData;
     std::vector<double> parameterData;
@@ -105,7 +124,18 @@ void DeviceConstraints::takeMolecules(const System &system, std::vector<Molecule
     for (std::size_t number = 0; number < isOnDevice.size(); ++number)
         if (!isOnDevice[number]) left.push_back(static_cast<std::int64_t>(number));
     if (numbers.empty()) return;
+    allocate(groupData, atomData, parameterData);
+    // A kernel takes the registers of its largest molecule, so that the small ones, water above all, have one of their
+    // own.
+    const std::size_t nLarge = std::count_if(sorted.begin(), sorted.end(), [](const MoleculesOfKind &one) {
+        return one.kind.bonds.size() > mostBondsOfSmall;
+    });
+    addLaunch(sorted, 0, nLarge, 0);
+    addLaunch(sorted, nLarge, sorted.size(), launches.empty() ? 0 : launches.back().lastSlot);
+}
 
+void DeviceConstraints::allocate(const std::vector<mm_int2> &groupData, const std::vector<int> &atomData,
+                                 const std::vector<double> &parameterData) {
     const bool doubles = context.getUseDoublePrecision() || context.getUseMixedPrecision();
     groups.initialize<mm_int2>(context, static_cast<int>(groupData.size()), "holonomicGroups");
     groups.upload(groupData);
@@ -118,14 +148,6 @@ void DeviceConstraints::takeMolecules(const System &system, std::vector<Molecule
     anyFailure.initialize<int>(context, 1, "holonomicAnyFailure");
     context.clearBuffer(failures);
     context.clearBuffer(anyFailure);
-
-    // A kernel takes the registers of its largest molecule, so that the small ones, water above all, have one of their
-    // own.
-    const std::size_t nLarge = std::count_if(sorted.begin(), sorted.end(), [](const MoleculesOfKind &one) {
-        return one.kind.bonds.size() > mostBondsOfSmall;
-    });
-    addLaunch(sorted, 0, nLarge, 0);
-    addLaunch(sorted, nLarge, sorted.size(), launches.empty() ? 0 : launches.back().lastSlot);
 }
 
 void DeviceConstraints::addLaunch(const std::vector<MoleculesOfKind> &sorted, std::size_t first, std::size_t last,
@@ -191,7 +213,8 @@ void DeviceConstraints::check() {
     if (failed.empty()) return;
     const std::int64_t number = numbers[failed[0]];
     std::string words;
-    for (int place : host.atomsOf(number)) words += (words.empty() ? " " : ", ") + std::to_string(atomOf[place]);
+    for (int place : atomsOf(host.chains(), number))
+        words += (words.empty() ? " " : ", ") + std::to_string(atomOf[place]);
     throw OpenMMException(
         "holonomic: the constraints of the molecule of atoms" + words + " could not be solved in step " +
         std::to_string(since + call) + ": the step is too long, or a coordinate is not finite" +
@@ -214,7 +237,7 @@ void DeviceConstraints::solveOnHost(bool toVelocities, const std::vector<std::in
         moved[atomAt[k]] = Vec3(state[4 * k], state[4 * k + 1], state[4 * k + 2]);
     }
     const std::vector<Vec3> before = r;
-    host.setActive(which);
+    activate(host.chains(), which);
     if (toVelocities) {
         host.applyToVelocities(r, moved, inverseMasses, 0);
     } else if (outsideOfSteps) {
@@ -228,7 +251,7 @@ void DeviceConstraints::solveOnHost(bool toVelocities, const std::vector<std::in
     // Nothing is changed of others, not even by a rounding. Molecules are known by the atoms that they began with.
     std::vector<bool> concerned(n, false);
     for (std::int64_t number : which)
-        for (int atom : host.atomsOf(number)) concerned[atom] = true;
+        for (int atom : atomsOf(host.chains(), number)) concerned[atom] = true;
     for (int k = 0; k < n; ++k)
         if (concerned[atomAt[k]])
             for (int axis = 0; axis < 3; ++axis) state[4 * k + axis] = moved[atomAt[k]][axis];

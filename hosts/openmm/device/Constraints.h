@@ -30,7 +30,9 @@ public:
 private:
     void findAtoms();
     void addLaunch(const std::vector<MoleculesOfKind> &sorted, std::size_t first, std::size_t last, int firstSlot);
-    void takeMolecules(const System &system, std::vector<MoleculesOfKind> sorted);
+    void takeMolecules(const System &system, const std::vector<MoleculesOfKind> &sorted);
+    void allocate(const std::vector<mm_int2> &groupData, const std::vector<int> &atomData,
+                  const std::vector<double> &parameterData);
     // The molecules that failed in the first call in which one did, by their slots; forgets them.
     std::vector<int> failedSlots(int &firstCall);
     void solveOnHost(bool toVelocities, const std::vector<std::int64_t> &which);
