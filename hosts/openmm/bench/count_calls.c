@@ -1,4 +1,5 @@
-/* Counts what a program asks of OpenCL: cc -shared -fPIC count_calls.c -o count_calls.so, and LD_PRELOAD=./count_calls.so. */
+/* Counts what a program asks of OpenCL: cc -shared -fPIC count_calls.c -o count_calls.so, and
+ * LD_PRELOAD=./count_calls.so. */
 #include <dlfcn.h>
 #include <stddef.h>
 
@@ -7,7 +8,7 @@ long n_launches, n_waits; /* kernels; reads that block, and waits for events or 
 /* The library is loaded late, by a plugin: it is not among those that come next. */
 static void *found(const char *name) { return dlsym(dlopen("libOpenCL.so.1", RTLD_NOW), name); }
 
-#define OWN(name, ...) \
+#define OWN(name, ...)              \
     static int (*own)(__VA_ARGS__); \
     if (!own) *(void **)&own = found(name)
 
