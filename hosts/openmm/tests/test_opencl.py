@@ -290,7 +290,7 @@ def missing():
     try:
         platform = mm.Platform.getPlatformByName("OpenCL")
     except mm.OpenMMException:
-        return "OpenMM has no platform OpenCL here (Debian: libopenmm-plugins)"
+        return "OpenMM has no platform OpenCL here (Debian: libopenmm-plugins and pocl-opencl-icd)"
     system = mm.System()
     system.addParticle(1)
     try:
