@@ -84,6 +84,7 @@ int main() { OpenMM::System system; }' | c++ -x c++ - -lOpenMM -o /dev/null 2>/d
         ase) [ -n "$(python_with numpy, ase)" ] ;;
         pytest) [ -n "$(python_with pytest)" ] ;;
         openmm-python) [ -n "$(python_with numpy, openmm)" ] ;;
+        opencl) ls /etc/OpenCL/vendors/*.icd >/dev/null 2>&1 ;;
         venv) [ -n "$(python_with numpy, venv, ensurepip)" ] ;;
         setuptools) [ -n "$(python_with setuptools, wheel, pip)" ] ;;
         sphinx) [ -n "$(python_with numpy, sphinx, myst_parser, sphinx_rtd_theme)" ] ;;
@@ -134,6 +135,7 @@ debian_package() {
         setuptools) echo python3-setuptools python3-wheel python3-pip ;;
         sphinx) echo python3-numpy python3-sphinx python3-myst-parser python3-sphinx-rtd-theme ;;
         openmm-python) echo python3-numpy "$(newest_package '^python3-(simtk|openmm)$' python3-openmm)" libopenmm-plugins ;;
+        opencl) echo pocl-opencl-icd ;; # on the processor
         ninja) echo ninja-build ;;
         openblas | mctc-lib) echo "lib$1-dev" ;;
         abidiff) echo abigail-tools ;;

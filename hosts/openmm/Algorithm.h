@@ -22,6 +22,9 @@ public:
     void applyToVelocities(std::vector<Vec3> &positions, std::vector<Vec3> &velocities,
                            std::vector<double> &inverseMasses, double tolerance) override;
 
+    // For a platform that leaves some of the molecules to the library.
+    hol_chains *chains() { return molecules.get(); }
+
 private:
     void addConstraints(const System &system);
     // Gives whether there is anything that can move.

@@ -2,9 +2,11 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "Algorithm.h"
+#include "DeviceKernel.h"
 #include "ReferenceConstraints.h"
 #include "ReferencePlatform.h"
 #include "openmm/OpenMMException.h"
@@ -26,6 +28,11 @@ public:
     // from it.
     void initialize(ContextImpl &context) override {
         const std::string &platform = context.getPlatform().getName();
+        if (context.getPlatform().supportsKernels({HolonomicDeviceKernel::Name()})) {
+            device = context.getPlatform().createKernel(HolonomicDeviceKernel::Name(), context);
+            device->getAs<HolonomicDeviceKernel>().initialize(context, owner.getNumThreads());
+            return;
+        }
         if (platform != "Reference" && platform != "CPU")
             throw OpenMMException(
                 "holonomic: the platform " + platform +
@@ -42,12 +49,16 @@ public:
 
     const Force &getOwner() const override { return owner; }
     void updateContextState(ContextImpl &, bool &) override {}
-    double calcForcesAndEnergy(ContextImpl &, bool, bool, int) override { return 0; }
+    double calcForcesAndEnergy(ContextImpl &, bool, bool withEnergy, int) override {
+        if (device) device->getAs<HolonomicDeviceKernel>().forcesAreComputed(withEnergy);
+        return 0;
+    }
     std::map<std::string, double> getDefaultParameters() override { return {}; }
     std::vector<std::string> getKernelNames() override { return {}; }
 
 private:
     const HolonomicConstraints &owner;
+    std::optional<Kernel> device;  // of a platform that has its own
 };
 
 // Systems are copied and saved by way of this.

@@ -5,7 +5,7 @@
     simulation = Simulation(topology, system, integrator, Platform.getPlatformByName("CPU"))
 
 Constraints are those of the System, whatever their shapes; they are right to the rounding of the coordinates, and the integrator's
-constraint tolerance is not looked at. Platforms CPU and Reference; others refuse.
+constraint tolerance is not looked at. Platforms CPU, Reference and OpenCL; others refuse.
 """
 
 import ctypes
@@ -29,7 +29,16 @@ def load(path=None):
             raise ImportError(f"{_NAME} was not found; HOLONOMIC_OPENMM_PLUGIN may name it")
         _plugin = ctypes.CDLL(found[0])
         _plugin.holonomicOpenMMAdd.argtypes = [ctypes.c_void_p, ctypes.c_int]
+        _load_devices(os.path.dirname(found[0]))
     return _plugin
+
+
+def _load_devices(folder):
+    """The plugin for OpenCL, where it was built and what it needs is there."""
+    try:
+        ctypes.CDLL(os.path.join(folder, "libOpenMMHolonomicOpenCL.so")).registerKernelFactories()
+    except OSError:
+        pass  # OpenMM's own refusal, when a Context is made, says what there is
 
 
 def add_holonomic(system, threads=1):

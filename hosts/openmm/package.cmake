@@ -6,6 +6,9 @@ if(HOLONOMIC_PACKAGE_DEB)
     set(python lib/python3/dist-packages)
 endif()
 install(TARGETS openmm_holonomic DESTINATION ${CMAKE_INSTALL_LIBDIR}/openmm/plugins)
+if(TARGET openmm_holonomic_opencl)
+    install(TARGETS openmm_holonomic_opencl DESTINATION ${CMAKE_INSTALL_LIBDIR}/openmm/plugins)
+endif()
 install(FILES HolonomicConstraints.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(FILES holonomic_openmm.py DESTINATION ${python})
 if(NOT HOLONOMIC_PACKAGE_DEB)
@@ -13,10 +16,13 @@ if(NOT HOLONOMIC_PACKAGE_DEB)
 endif()
 
 set(package holonomic-openmm)
+if(TARGET openmm_holonomic_opencl) # the platform's own library is in the same folder
+    set_target_properties(openmm_holonomic_opencl PROPERTIES INSTALL_RPATH "$ORIGIN")
+endif()
 set(summary "constraints of OpenMM to the rounding, of any shape")
-set(description "Plugin for the platforms CPU and Reference of OpenMM: it takes the place of
-SETTLE and CCMA for Systems to which its Force was added. With a module for
-Python, holonomic_openmm, and a header for C++.")
+set(description "Plugin for the platforms CPU, Reference and OpenCL of OpenMM: it takes the
+place of SETTLE and CCMA for Systems to which its Force was added. With a
+module for Python, holonomic_openmm, and a header for C++.")
 set(depends "python3:any (>= 3.8)")
 set(recommends "libopenmm-plugins, python3-simtk")
 include(${CMAKE_CURRENT_LIST_DIR}/../../cmake/host_package.cmake)

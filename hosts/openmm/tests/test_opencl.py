@@ -1,0 +1,311 @@
+"""The platform OpenCL, in three precisions: all molecules in one System, all integrators, and the platform Reference beside it.
+
+Any OpenCL device will do, pocl on a CPU too. Ends with 77, and the reason, where there is none.
+"""
+
+import copy
+import os
+import sys
+import unittest
+
+import numpy as np
+import openmm as mm
+from openmm import unit
+
+from holonomic_openmm import add_holonomic, load
+from test_openmm import system_of
+from test_scenes import INTEGRATORS, charged, positions, velocities, worst
+
+PRECISIONS = {"double": 1e-14, "mixed": 1e-13, "single": 2e-6}  # and the error that coordinates of 0.3 nm leave to bonds
+
+
+def random_graph(rng, n, rings):
+    """A tree of n atoms and a few bonds more."""
+    bonds = {(int(rng.integers(i)), i) for i in range(1, n)}
+    while len(bonds) < n - 1 + rings:
+        i, j = sorted(int(k) for k in rng.choice(n, 2, replace=False))
+        bonds.add((i, j))
+    return sorted(bonds)
+
+
+class Scene:
+    """Molecules of all kinds on springs to where they begin, a few of each, one after the other."""
+
+    def __init__(self):
+        rng = np.random.default_rng(20)
+        self.masses, self.r, self.bonds, self.sites, self.still = [], [], [], [], []
+        for _ in range(3):
+            self.add([16, 1, 1, 0], [(0, 0, 0), (0.0957, 0, 0), (-0.024, 0.0927, 0), (0.008, 0.01, 0)], [(0, 1), (0, 2), (1, 2)])
+            self.sites.append(len(self.masses) - 1)
+        for order in ((0, 1, 2, 3), (3, 0, 2, 1)):  # a methyl group, its carbon first or last
+            corners = np.array([(0, 0, 0), (0.063, 0.063, 0.063), (0.063, -0.063, -0.063), (-0.063, 0.063, -0.063)])
+            self.add(np.array([12, 1, 1, 1])[list(order)], corners[list(order)],
+                     [(order.index(0), order.index(k)) for k in (1, 2, 3)])
+        self.add([0, 0], [(0.2, 0, 0), (0, 0.2, 0)], [(0, 1)])
+        self.still = [len(self.masses) - 2, len(self.masses) - 1]
+        self.add([14, 1], [(0, 0, 0), (0.1, 0, 0)], [(0, 1)])
+        self.add([72, 72, 72, 600], [(0, 0, 0), (0.28, 0.04, -0.07), (-0.19, 0.10, 0.10), (0.03, 0.23, -0.13)],
+                 [(0, 1), (0, 2), (1, 2), (1, 3), (2, 3)])  # the cholesterol of Martini: two triangles with one edge
+        self.add([5, 1, 1, 1], [(0, 0, 0), (0.1, 0, 0), (0, 0.1, 0), (0, 0, 0.1)], [(i, j) for i in range(4) for j in range(i)])
+        self.add([12] * 9, np.cumsum([(0.126 * (k > 0), 0.044 * (-1) ** k, 0) for k in range(9)], axis=0),
+                 [(k, k + 1) for k in range(8)])
+        self.add([16, 12, 16], [(-0.116, 0, 0), (0, 0, 0), (0.116, 0, 0)], [(0, 1), (1, 2), (0, 2)])  # straight: for the host
+        for n, rings in ((12, 0), (20, 2), (8, 3)):
+            self.add(rng.uniform(1, 16, n), rng.normal(0, 0.1, (n, 3)), random_graph(rng, n, rings))
+        self.r = np.array(self.r)
+        self.v = rng.normal(size=self.r.shape) * (np.array(self.masses) > 0)[:, None] * 0.3
+
+    def add(self, masses, r, bonds):
+        first = len(self.masses)
+        self.masses += [float(mass) for mass in masses]
+        self.r += [tuple(np.array(place, float)) for place in r]
+        self.bonds += [(first + i, first + j, float(np.linalg.norm(np.subtract(r[i], r[j])))) for i, j in bonds]
+
+    def system(self):
+        system = mm.System()
+        for mass in self.masses:
+            system.addParticle(mass)
+        for bond in self.bonds:
+            system.addConstraint(*bond)
+        for site in self.sites:
+            system.setVirtualSite(site, mm.ThreeParticleAverageSite(site - 3, site - 2, site - 1, 0.8, 0.1, 0.1))
+        spring = mm.CustomExternalForce("400*((x-x0)^2+1.5*(y-y0)^2+0.5*(z-z0)^2)")
+        for name in ("x0", "y0", "z0"):
+            spring.addPerParticleParameter(name)
+        rng = np.random.default_rng(21)
+        for i, place in enumerate(self.r):
+            spring.addParticle(i, np.float32(place + 0.05 * rng.normal(size=3)).astype(float))  # kept in floats by devices
+        system.addForce(spring)
+        add_holonomic(system)
+        return system
+
+    def moving(self):
+        return [bond for bond in self.bonds if self.masses[bond[0]] > 0]
+
+
+SCENE = Scene()
+
+
+def context_of(system, integrator, precision, r, v=None):
+    """On OpenCL in a precision; with None on the platform Reference."""
+    integrator.setConstraintTolerance(0.01)  # not looked at
+    name = "OpenCL" if precision else "Reference"
+    context = mm.Context(system, integrator, mm.Platform.getPlatformByName(name), {"Precision": precision} if precision else {})
+    context.setPositions(r)
+    context.applyConstraints(1e-3)
+    if v is not None:
+        context.setVelocities(v)
+        context.applyVelocityConstraints(1e-3)
+    context.computeVirtualSites()
+    return context
+
+
+def energies(context, samples, steps):
+    found = []
+    for _ in range(samples):
+        context.getIntegrator().step(steps)
+        state = context.getState(getEnergy=True)
+        found.append((state.getKineticEnergy() + state.getPotentialEnergy())._value)
+    return np.array(found)
+
+
+class Steps(unittest.TestCase):
+    def test_of_every_integrator_keep_the_constraints(self):
+        for precision, bound in PRECISIONS.items():
+            for name, integrator in INTEGRATORS.items():
+                with self.subTest(precision=precision, integrator=name):
+                    context = context_of(SCENE.system(), integrator(), precision, SCENE.r, SCENE.v)
+                    context.getIntegrator().step(40)
+                    r = positions(context)
+                    self.assertLess(worst(r, SCENE.moving()), bound)
+                    self.assertGreater(np.abs(r - SCENE.r).max(), 1e-3)
+                    np.testing.assert_allclose(r[SCENE.still], SCENE.r[SCENE.still], atol=1e-8)
+                    for site in SCENE.sites:
+                        np.testing.assert_allclose(r[site], np.dot([0.8, 0.1, 0.1], r[site - 3:site]), atol=1e-7)
+
+    def test_are_those_of_the_platform_reference(self):
+        ends = {}
+        for precision in (None, *PRECISIONS):
+            context = context_of(SCENE.system(), mm.VerletIntegrator(0.001), precision, SCENE.r, SCENE.v)
+            context.getIntegrator().step(100)
+            ends[precision] = positions(context), velocities(context)
+        for precision, bound in ("double", 1e-10), ("mixed", 1e-6), ("single", 1e-4):  # forces of mixed are in floats
+            for one, other in zip(ends[precision], ends[None]):
+                np.testing.assert_allclose(one, other, atol=bound * max(1, np.abs(other).max()))
+
+    def test_have_equal_bits_in_every_run(self):
+        for precision in PRECISIONS:
+            ends = []
+            for _ in range(2):
+                context = context_of(SCENE.system(), mm.VerletIntegrator(0.001), precision, SCENE.r, SCENE.v)
+                context.getIntegrator().step(100)
+                ends.append((positions(context), velocities(context)))
+            np.testing.assert_array_equal(ends[0], ends[1])
+
+    def test_conserve_the_energy_as_on_the_platform_reference(self):
+        reference = energies(context_of(SCENE.system(), mm.VerletIntegrator(0.001), None, SCENE.r, SCENE.v), 60, 50)
+        for precision, rounding in ("double", 1e-9), ("mixed", 1e-4), ("single", 2e-3):
+            found = energies(context_of(SCENE.system(), mm.VerletIntegrator(0.001), precision, SCENE.r, SCENE.v), 60, 50)
+            scale = np.abs(reference).max()
+            self.assertLess(np.std(found), 1.05 * np.std(reference) + rounding * scale)
+            self.assertLess(abs(np.polyfit(range(60), found - reference, 1)[0]) * 60, rounding * scale)
+
+    def test_velocities_are_made_tangent(self):
+        for precision, bound in ("double", 1e-15), ("mixed", 1e-15), ("single", 1e-7):
+            context = context_of(SCENE.system(), mm.VerletIntegrator(0.001), precision, SCENE.r, SCENE.v)
+            r, v = positions(context), velocities(context)
+            for i, j, _ in SCENE.moving():
+                self.assertLess(abs((r[i] - r[j]) @ (v[i] - v[j])), bound)
+
+    def test_with_atoms_that_change_places(self):
+        """OpenMM sorts molecules by their places in space every 250 steps."""
+        rng = np.random.default_rng(22)
+        masses, r, bonds = [], [], []
+        water, chain = [(0, 0, 0), (0.1, 0, 0), (-0.033, 0.094, 0)], [(0.12 * k, 0.05 * (k % 2), 0) for k in range(5)]
+        for k, corner in enumerate(rng.permutation([(x, y, z) for x in range(6) for y in range(6) for z in range(6)])):
+            first = len(r)
+            r += list(0.8 * corner + np.array(water if k % 3 else chain))
+            masses += [16, 1, 1] if k % 3 else [14] * 5
+            pairs = [(0, 1), (0, 2), (1, 2)] if k % 3 else [(0, 1), (1, 2), (2, 3), (3, 4)]
+            bonds += [(first + i, first + j, float(np.linalg.norm(r[first + i] - r[first + j]))) for i, j in pairs]
+        system = charged(masses, [0.0] * len(masses))
+        force = system.getForce(0)
+        for i in range(len(masses)):
+            force.setParticleParameters(i, 0, 0.2, 0.3)
+        force.createExceptionsFromBonds([(i, j) for i, j, _ in bonds], 0, 0)
+        force.setNonbondedMethod(mm.NonbondedForce.CutoffPeriodic)
+        force.setCutoffDistance(0.9)
+        system.setDefaultPeriodicBoxVectors((4.8, 0, 0), (0, 4.8, 0), (0, 0, 4.8))
+        for bond in bonds:
+            system.addConstraint(*bond)
+        add_holonomic(system)
+        r, v = np.array(r), rng.normal(size=(len(r), 3))
+        ends = []
+        for precision in (None, "double"):
+            context = context_of(copy.deepcopy(system), mm.VerletIntegrator(0.001), precision, r, v)
+            context.getIntegrator().step(300)
+            ends.append(positions(context))
+        self.assertLess(worst(ends[1], bonds), 1e-13)
+        np.testing.assert_allclose(ends[0], ends[1], atol=1e-5)  # sums of forces have 32 bits behind the point
+
+
+class Contexts(unittest.TestCase):
+    def test_crude_positions_are_brought_onto_the_constraints(self):
+        noise = np.random.default_rng(23).normal(size=SCENE.r.shape)
+        for precision, bound in PRECISIONS.items():
+            for off in (0.02, 0.12):  # from the second, a bond's length, the library must help
+                context = context_of(SCENE.system(), mm.VerletIntegrator(0.001), precision, SCENE.r + off * noise)
+                self.assertLess(worst(positions(context), SCENE.moving()), 2 * bound)
+
+    def test_a_minimisation_ends_on_the_constraints(self):
+        for precision, bound in PRECISIONS.items():
+            context = context_of(SCENE.system(), mm.VerletIntegrator(0.001), precision, SCENE.r)
+            before = context.getState(getEnergy=True).getPotentialEnergy()
+            context.getIntegrator().setConstraintTolerance(1e-6)  # with a loose one the minimiser leaves out the projection
+            mm.LocalEnergyMinimizer.minimize(context, 10, 50)
+            self.assertLess(context.getState(getEnergy=True).getPotentialEnergy(), before)
+            self.assertLess(worst(positions(context), SCENE.moving()), bound)
+
+    def test_a_molecule_that_is_too_large_is_solved_on_the_host(self):
+        rng = np.random.default_rng(24)
+        bonds = [(max(0, i - int(rng.integers(1, 3))), i) for i in range(1, 700)]
+        r = np.zeros((700, 3))
+        for i, j in bonds:
+            step = rng.normal(size=3)
+            r[j] = r[i] + 0.15 * step / np.linalg.norm(step)
+        for precision, bound in ("mixed", 1e-12), ("single", 2e-5):
+            system = system_of(r, bonds, rng.uniform(1, 16, 700), True)
+            context = context_of(system, mm.VerletIntegrator(0.001), precision, r, rng.normal(size=r.shape))
+            context.getIntegrator().step(20)
+            self.assertLess(worst(positions(context), [(i, j, 0.15) for i, j in bonds]), bound)
+            self.assertGreater(np.abs(positions(context) - r).max(), 1e-2)
+
+    def test_made_again_and_from_a_copy(self):
+        integrator = mm.VerletIntegrator(0.001)
+        context = context_of(copy.deepcopy(SCENE.system()), integrator, "mixed", SCENE.r, SCENE.v)
+        integrator.step(5)
+        context.reinitialize(preserveState=True)
+        integrator.step(5)
+        self.assertLess(worst(positions(context), SCENE.moving()), PRECISIONS["mixed"])
+
+    def test_without_the_force_are_openmms_own(self):
+        system = SCENE.system()
+        system.removeForce(1)
+        integrator = mm.VerletIntegrator(0.001)
+        context = mm.Context(system, integrator, mm.Platform.getPlatformByName("OpenCL"), {"Precision": "double"})
+        context.setPositions(SCENE.r + 1e-3 * np.random.default_rng(25).normal(size=SCENE.r.shape))
+        context.applyConstraints(1e-4)
+        bonds = [bond for bond in SCENE.moving() if SCENE.masses[bond[0]] == 16]
+        self.assertLess(worst(positions(context), bonds), 1e-3)
+
+
+class Failures(unittest.TestCase):
+    def test_of_a_step_name_the_atoms_and_the_step(self):
+        for precision in PRECISIONS:
+            integrator = mm.VerletIntegrator(0.001)
+            context = context_of(SCENE.system(), integrator, precision, SCENE.r, SCENE.v)
+            integrator.step(3)
+            v = velocities(context)
+            first = SCENE.bonds[6][0]  # the third water
+            v[first] += (0, 0, 900)
+            context.setVelocities(v)
+            integrator.step(1)
+            with self.assertRaisesRegex(mm.OpenMMException, f"atoms {first}, {first + 1}, {first + 2} could not be solved in step 4"):
+                context.getState(getEnergy=True)
+            context.setPositions(SCENE.r)  # and it goes on
+            context.setVelocities(SCENE.v)
+            context.applyVelocityConstraints(1e-3)
+            integrator.step(20)
+            context.getState(getEnergy=True)
+            self.assertLess(worst(positions(context), SCENE.moving()), PRECISIONS[precision])
+
+    def test_are_told_within_sixteen_steps(self):
+        integrator = mm.VerletIntegrator(0.001)
+        context = context_of(SCENE.system(), integrator, "mixed", SCENE.r, SCENE.v)
+        integrator.step(3)
+        v = velocities(context)
+        v[SCENE.bonds[0][0]] += (0, 0, 900)
+        context.setVelocities(v)
+        with self.assertRaisesRegex(mm.OpenMMException, "in step 4"):
+            integrator.step(17)
+
+    def test_outside_of_a_step_are_told_at_once(self):
+        context = context_of(SCENE.system(), mm.VerletIntegrator(0.001), "mixed", SCENE.r)
+        r = SCENE.r.copy()
+        r[SCENE.bonds[0][1]] = np.nan
+        context.setPositions(r)
+        with self.assertRaisesRegex(mm.OpenMMException, "holonomic.*finite"):
+            context.applyConstraints(1e-3)
+
+    def test_of_lengths_that_fit_no_places_are_told_when_the_context_is_made(self):
+        system = SCENE.system()
+        system.setConstraintParameters(0, 0, 1, 0.9)
+        with self.assertRaisesRegex(mm.OpenMMException, "more than the two other sides of its triangle"):
+            context_of(system, mm.VerletIntegrator(0.001), "mixed", SCENE.r)
+
+
+def missing():
+    """Why there is nothing to test, if there is."""
+    mm.Platform.loadPluginsFromDirectory(mm.Platform.getDefaultPluginsDirectory())
+    try:
+        platform = mm.Platform.getPlatformByName("OpenCL")
+    except mm.OpenMMException:
+        return "OpenMM has no platform OpenCL here (Debian: libopenmm-plugins and pocl-opencl-icd)"
+    system = mm.System()
+    system.addParticle(1)
+    try:
+        mm.Context(system, mm.VerletIntegrator(0.001), platform)
+    except mm.OpenMMException as error:
+        return f"no OpenCL device ({error}; Debian: pocl-opencl-icd)"
+    load()
+    if not os.path.exists(os.path.join(os.path.dirname(os.environ["HOLONOMIC_OPENMM_PLUGIN"]), "libOpenMMHolonomicOpenCL.so")):
+        return "the plugin was built without OpenCL"
+    return None
+
+
+if __name__ == "__main__":
+    reason = missing()
+    if reason:
+        print(f"left out: {reason}")
+        sys.exit(77)
+    unittest.main()
