@@ -678,8 +678,8 @@ HOL_API int hol_chains_set_tolerance(hol_chains *chains, double tolerance);
 /**
  * Bound on the iterations of hol_project_positions for a molecule of any shape, 1..1000. The default is 50; a
  * well-posed step needs 2 to 5. A molecule that needs more iterations is HOL_ERR_NO_CONVERGENCE; a smaller bound makes
- * no step faster that converges. The bound is also the number of points at which the path of a root from the reference
- * is looked at (hol_project_positions). Below 20 no root is followed.
+ * no step faster that converges. A root that is followed from the reference (hol_project_positions) is looked at in up
+ * to four times as many points of its path; with a bound below 20 no root is followed.
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE. Not thread-safe on one handle. Since 0.1.
  */
 HOL_API int hol_chains_set_max_iterations(hol_chains *chains, int max_iterations);
