@@ -24,7 +24,7 @@ include_patterns = [
     "docs/site/*.rst", "README.md", "CHANGELOG.md", "CONTRIBUTING.md", "docs/**.md", "examples/**.md", "hosts/*/README.md", "python/README.md",
     "core/**/README.md", "tests/oracle/**README.md",
 ]
-exclude_patterns = ["build", ".git", "bench"]
+exclude_patterns = ["build", ".git", "bench", "docs/development/archive"]
 
 myst_heading_anchors = 4
 suppress_warnings = ["myst.header"]  # pages may begin with small headings

@@ -12,17 +12,17 @@
  *   2 (lambda_{i+1} d_{i+1} - lambda_i d_i). T_k = 2 lambda_k |d_k| is the tension of the bond, a force; > 0 pulls its
  *   atoms together. Neither depends on which atom of a bond comes first.
  * - A molecule is a set of atoms joined by bonds, directly or through each other. Fixed atoms join nothing, so one may
- *   belong to many molecules. Molecules are numbered call after call, those of one call by their lowest atom that can
- *   move, those with rigid bodies behind all others. A chain is a linear molecule; in the name hol_chains alone it
- *   means a molecule of any shape.
+ *   belong to many molecules. Molecules are numbered in the order of the calls that add them and, within a call, by
+ *   their lowest atom that can move. Molecules with rigid bodies come after all others. A chain is a linear molecule.
+ *   In the name hol_chains, and only there, the word means a molecule of any shape.
  * - Bonds of a molecule are counted along a linear chain, otherwise by their lower and then by their higher atom:
  *   hol_chains_bonds gives their places in the arrays per bond.
  * - A bond between two fixed atoms is no constraint: it belongs to no molecule, removes no degree of freedom, and its
  *   multiplier and tension are 0.
- * - Units are the caller's own; any consistent set does (mass, length, time; force = mass length / time^2). Other units
- *   that differ by powers of two give the same bits (in sums over molecules all but the last ones). A molecule whose
- *   numbers would overflow or underflow on the way is worked on in units of its own, which takes longer; a result that
- *   overflows itself is HOL_ERR_NOT_FINITE.
+ * - Units are the caller's own; any consistent set does (mass, length, time; force = mass length / time^2). Units that
+ *   differ by powers of two give the same bits; only sums over molecules may differ in their last bits. If numbers on
+ *   the way would overflow or underflow, the library works on the molecule in other units, which takes longer. If a
+ *   result itself overflows, that is HOL_ERR_NOT_FINITE.
  * - An output that is NULL is not computed; an input that may be NULL is zero then. Neither costs anything.
  * - Arrays per atom are [n_atoms][3] (Fortran: (3, n_atoms)); only atoms of molecules are read and written. Arrays per
  *   bond are [n_bonds], in the order in which the bonds were given, call after call. Arrays per molecule are
@@ -35,16 +35,17 @@
  *   HOL_ERR_NO_CONVERGENCE): their outputs stay as they were, bit for bit; all other molecules are complete; sums over
  *   molecules (virial, energy) are not written. Status, message and location are those of the first bad molecule. A
  *   fixed atom of several molecules gets the sum over those that are not bad.
- * - An output may overlap another argument only where its description says so. Velocities that are the very array of
- *   the positions, or forces that are, are HOL_ERR_VALUE.
+ * - An output may overlap another argument only where its description says so. If velocities or forces are the same
+ *   array as the positions, that is HOL_ERR_VALUE.
  * - The library never prints, exits, aborts or throws.
- * - Floating-point environment: whatever the caller has set (exceptions that trap, as by gfortran's -ffpe-trap; another
- *   rounding; denormal numbers flushed to zero), each function calculates in the default environment of the processor,
- *   in all its threads, gives the same bits, and leaves the caller's as it was, sticky exception flags included.
- * - Threads: any number of them may use a handle at once that none changes (create, add, set, destroy). Scratch memory
- *   belongs to the calling thread. After a thread's first call with molecules of that size nothing is allocated, with
- *   three exceptions: hol_impose; a long chain whose positions need a second attempt (light atoms, taut between heavy
- *   ones); and a step so long that a molecule is looked at alone.
+ * - Floating-point environment: each function calculates in the default environment of the processor, in all its
+ *   threads. So it gives the same bits whatever the caller has set: exceptions that trap (gfortran's -ffpe-trap),
+ *   another rounding, denormal numbers flushed to zero. The caller's environment stays as it was, sticky exception
+ *   flags included.
+ * - Threads: any number of threads may use a handle at once, as long as none of them changes it (create, add, set,
+ *   destroy). Scratch memory belongs to the calling thread. After a thread's first call with molecules of that size
+ *   nothing is allocated, with three exceptions: hol_impose; a long chain whose positions need a second attempt (light
+ *   atoms, taut between heavy ones); and a step so long that a molecule is looked at alone.
  * - Results depend on nothing but the molecule: not on hol_chains_set_threads, the memory layout, the other molecules,
  *   nor the order in which bonds were given.
  */
@@ -102,7 +103,7 @@ typedef enum hol_status HOL_IS_INT {
 /** Version of the library that runs, "MAJOR.MINOR.PATCH". Never NULL. Since 0.1. */
 HOL_API const char *hol_version(void);
 
-/** The same as a number, HOL_VERSION of its header. Since 0.3. */
+/** Version of the library that runs as a number, HOL_VERSION of its header. Since 0.3. */
 HOL_API int hol_version_number(void);
 
 /** Name of a status, such as "HOL_ERR_INDEX"; "unknown status" for any other number. Never NULL. Since 0.1. */
@@ -127,8 +128,8 @@ HOL_API const char *hol_error_message(void);
 HOL_API void hol_error_location(int64_t *molecule, int64_t *bond, int64_t *atom, int64_t *n_bad);
 
 /**
- * For bindings to other languages: remembers a failure that they have found themselves as this thread's last one, at no
- * place, so that hol_error_message() and hol_error_location() tell nothing of an earlier one.
+ * For bindings to other languages: a binding that has found a failure itself records it here as this thread's last one.
+ * The failure has no place: hol_error_location() gives -1, so that nothing is told of an earlier failure.
  * @param[in] status   an hol_status
  * @param[in] message  copied, at most 639 letters of it; NULL: ""
  * @return status. Since 0.3.
@@ -152,7 +153,8 @@ typedef struct hol_chains hol_chains;
  * Makes an empty set of molecules over n_atoms atoms.
  * @param[in]  n_atoms  number of atoms in the caller's arrays, >= 0
  * @param[in]  masses   [n_atoms], mass; +infinity: the atom is held fixed. 0 means the same, as in earlier releases,
- * but for an atom of a rigid body: there it is a massless site (hol_chains_add_rigid). All may be fixed. Copied.
+ *                      except for an atom of a rigid body: there it makes a massless site (hol_chains_add_rigid). All
+ *                      may be fixed. Copied.
  * @param[out] chains   the new handle, to be given to hol_chains_destroy; NULL on an error
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (n_atoms < 0; a mass negative, NaN, or so small that 1/m overflows: the
  *         message names the atom, counted from 0); HOL_ERR_MEMORY. Since 0.1.
@@ -160,9 +162,9 @@ typedef struct hol_chains hol_chains;
 HOL_API int hol_chains_create(int64_t n_atoms, const double *masses, hol_chains **chains);
 
 /**
- * A handle with the same molecules, lengths, masses, boxes and options, to be changed apart from the other: one for
- * each replica that has a box of its own. What was found out about the shapes of molecules is shared, not made again,
- * so that it costs what copying the lists costs. Either may be destroyed first.
+ * Makes a second handle with the same molecules, lengths, masses, boxes and options. Each of the two can be changed
+ * without the other: one for each replica that has a box of its own. Both share what the library has found out about
+ * the shapes of molecules, so that a copy costs no more than to copy the lists. Either may be destroyed first.
  * @param[in]  chains
  * @param[out] copy    the new handle, to be given to hol_chains_destroy; NULL on an error
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_MEMORY. Thread-safe on one handle. Since 0.3.
@@ -202,9 +204,9 @@ HOL_API int hol_chains_add_block(hol_chains *chains, int64_t n_chains, int64_t n
                                  const double *lengths);
 
 /**
- * Adds bonds in any order, either atom first: the library finds the molecules that they form, and which of them are
- * linear chains, trees, rings, triangles or anything else (docs/molecules.md). Molecules of equal masses, lengths and
- * relative numbers of atoms are worked on together: number the atoms of equal molecules alike, and calls are as fast
+ * Adds bonds in any order, either atom first. The library finds the molecules that they form, and which of them are
+ * linear chains, trees, rings, triangles or anything else (docs/molecules.md). It works on molecules with equal masses,
+ * lengths and relative numbers of atoms together. So number the atoms of equal molecules alike: calls are then as fast
  * as with hol_chains_add_molecules.
  *
  * @param[in,out] chains
@@ -212,21 +214,25 @@ HOL_API int hol_chains_add_block(hol_chains *chains, int64_t n_chains, int64_t n
  * @param[in]     pairs    [n_bonds][2], the two atoms of each bond (Fortran: (2, n_bonds))
  * @param[in]     lengths  [n_bonds], as in hol_chains_add. Copied.
  *
- * Distances that depend on each other are held as rigid bodies, as if hol_chains_add_rigid had been called, where their
- * lengths say so: atoms that are all bonded to each other, three on a line, four in a plane, five and more; rings of
- * six atoms and more whose angles, held by distances of next neighbours, keep them in a plane; and atoms that such a
- * body holds by more distances than their places have coordinates. Lengths may be as a topology file has them, with few
- * decimals: they are adjusted in the least way (hol_chains_adjustment), by no more than
- * hol_chains_set_length_tolerance. Four atoms are flat, and three straight, where a plane or a line misses their
- * lengths by no more than their last decimal, or where no other places are nearer. Forces and motions are those of the
- * body. Multipliers of such bonds are, of those whose pulls come nearest to the body's forces, the ones of least norm;
- * only forces across a line or plane have none. Right-hand sides of hol_solve are not looked at for them.
+ * Distances that depend on each other become rigid bodies, as if hol_chains_add_rigid had been called, where their
+ * lengths say so:
+ * - atoms that are all bonded to each other: three on a line, four in a plane, five and more;
+ * - rings of six atoms and more whose angles, held by distances of next neighbours, keep them in a plane;
+ * - atoms that such a body holds by more distances than their places have coordinates.
  *
- * Where groups of five atoms and more share atoms, as all bonds and angles of an alkane do, they are no bodies:
- * distances that shorter ones of the molecule imply (the tenth of five atoms, ...) are left out of the equations
- * (hol_chains_implied). Their lengths are compared with the others', within the same tolerance. Groups on a line or in
- * a plane that share atoms with each other are linear relations (hol_chains_add_linear) and the distances that are
- * independent beside them; multipliers of the others are 0. A length of 0 makes two atoms that can move one point.
+ * Lengths may have few decimals, as in a topology file. The library adjusts them in the least way
+ * (hol_chains_adjustment), by no more than hol_chains_set_length_tolerance. Four atoms count as flat, and three as
+ * straight, where a plane or a line misses their lengths by no more than their last decimal, or where no other places
+ * are nearer. Forces and motions are those of the body. Multipliers of its bonds are not unique: their pulls come as
+ * near as they can to the body's forces, and of all such multipliers these have the least norm. Only forces across a
+ * line or plane have no multipliers. hol_solve does not look at the right-hand sides of these bonds.
+ *
+ * Groups of five atoms and more that share atoms, as all bonds and angles of an alkane do, become no bodies. Distances
+ * that shorter ones of the molecule imply (the tenth of five atoms, ...) are left out of the equations
+ * (hol_chains_implied); their lengths must agree with the others within the same tolerance. Groups on a line or in a
+ * plane that share atoms with each other become linear relations (hol_chains_add_linear), and the distances that are
+ * independent of these stay constraints; multipliers of all other distances are 0. A length of 0 makes one point of two
+ * atoms that can move.
  *
  * New molecules are numbered by their lowest atoms that can move, those with bodies behind all others. Arrays per bond
  * have these bonds in the order of the list, after those of earlier calls. All bonds of a molecule have to be given in
@@ -252,8 +258,8 @@ HOL_API int hol_chains_add_bonds(hol_chains *chains, int64_t n_bonds, const int6
  * @param[in] n_bonds      >= 0, bonds of one molecule
  * @param[in] pairs        [n_bonds][2], numbers within the molecule, counted from the index base
  * @param[in] lengths      [n_bonds], the same for every molecule. Copied.
- * @return as hol_chains_add_bonds, of which this is n_molecules copies in one list, molecule after molecule (bonds that
- *         do not hold together make several molecules of each copy). Since 0.2.
+ * @return as hol_chains_add_bonds with n_molecules copies of these bonds in one list, molecule after molecule. If the
+ *         bonds do not hold together, each copy makes several molecules. Since 0.2.
  */
 HOL_API int hol_chains_add_molecules(hol_chains *chains, int64_t n_molecules, int64_t n_atoms, int64_t first_atom,
                                      int64_t n_bonds, const int64_t *pairs, const double *lengths);
@@ -267,36 +273,36 @@ HOL_API int hol_chains_add_molecules(hol_chains *chains, int64_t n_molecules, in
  * @param[in]     n_bodies  >= 0
  * @param[in]     sizes     [n_bodies], how many atoms each body has, >= 2
  * @param[in]     atoms     [sum of sizes], the atoms of one body after the other, any numbers of the caller's arrays.
- *                          An atom of mass 0 becomes a massless site here: its place is written with the others'
- *                          and the force on it goes to them, in G of hol_forces: an integrator that kicks and projects
- *                          kicks by f + G (docs/rigid.md). An atom of infinite mass is held fixed, and can be in no
- *                          body
+ *                          An atom of mass 0 becomes a massless site here: its position is written with those of the
+ *                          body's atoms, and the force on it goes to them, in G of hol_forces. So an integrator that
+ *                          kicks and projects must kick by f + G (docs/rigid.md). An atom of infinite mass is held
+ *                          fixed, and can be in no body
  * @param[in]     places    [sum of sizes][3], reference coordinates of these atoms, each body in any frame of its own.
- *                          They say what the body looks like; where it is, and which way it points, say the positions
- *                          given to the verbs. Copied.
+ *                          They give the shape of the body alone. The positions given to the verbs say where it is and
+ *                          which way it points. Copied.
  * @param[in]     n_bonds   >= 0; 0: the bodies are alone
  * @param[in]     pairs     [n_bonds][2], bonds between an atom of a body and another atom: of another body, of none, or
  *                          held fixed; and between other atoms of these molecules. May be NULL if n_bonds is 0
  * @param[in]     lengths   [n_bonds], as in hol_chains_add. May be NULL if n_bonds is 0. Copied.
  *
- * Bodies are taken as thin as they are: three atoms on a line to 1e-8 of its length are linear. A site must lie on the
- * line of a linear body. Off the plane of a planar one (the lone pairs of TIP5P) it is at its height along the normal,
- * on the side on which it is in `places`, and can have no bond to atoms outside of its body (since 0.3). A bond within
- * a body is satisfied by it: its multiplier is 0. Bodies may share atoms (since 0.2): one is a ball joint, two are a
- * hinge.
+ * Bodies may be linear or planar: atoms on a line to 1e-8 of its length are a linear body. A site must lie on the line
+ * of a linear body. It may lie off the plane of a planar one (the lone pairs of TIP5P): it keeps its height along the
+ * normal, on the side on which it is in `places`, and can have no bond to atoms outside of its body (since 0.3). The
+ * body itself satisfies a bond within it: its multiplier is 0. Bodies may share atoms (since 0.2): one is a ball joint,
+ * two are a hinge.
  *
  * Molecules with bodies are numbered behind all others of the set, in the order of their first bodies; their bonds
  * stand in the arrays per bond in the order of the list, after those of earlier calls. All bonds of a molecule have to
- * be given in one call. The verbs treat them as other molecules: multipliers of bonds, constraint forces
- * G_i = m_i a_i - f_i (of a site -f_i), velocities and positions of all atoms, the virial sum r_i (x) G_i. What holds a
- * body together has no multipliers of its own. hol_violation, hol_report and hol_error_location name -1 for the bond
- * where it is the body that is meant. hol_metric, hol_inverse_create and hol_project_positions_along refuse such sets
- * or molecules: HOL_ERR_UNSUPPORTED.
+ * be given in one call. The verbs treat them as other molecules: they give multipliers of bonds, velocities and
+ * positions of all atoms, constraint forces G_i = m_i a_i - f_i (of a site -f_i), and the virial sum r_i (x) G_i. What
+ * holds a body together has no multipliers of its own. hol_violation, hol_report and hol_error_location give -1 for the
+ * bond where they mean the body. hol_metric, hol_inverse_create and hol_project_positions_along refuse such sets or
+ * molecules: HOL_ERR_UNSUPPORTED.
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (sizes; a length; a body without mass, with mass at one point, with a
  *         fixed atom, or with a site that it cannot carry; a bond within a body of another length; a bond in no
- * molecule with a body); HOL_ERR_INDEX; HOL_ERR_SHARED_ATOM (an atom twice in a body or in a molecule of an earlier
- * call); HOL_ERR_NOT_FINITE (places); HOL_ERR_DEGENERATE (a bond given twice, more bonds than freedoms);
- *         HOL_ERR_MEMORY. On an error nothing is added. Not thread-safe on one handle. Since 0.2.
+ *         molecule with a body); HOL_ERR_INDEX; HOL_ERR_SHARED_ATOM (an atom twice in a body or in a molecule of an
+ *         earlier call); HOL_ERR_NOT_FINITE (places); HOL_ERR_DEGENERATE (a bond given twice, more bonds than
+ *         freedoms); HOL_ERR_MEMORY. On an error nothing is added. Not thread-safe on one handle. Since 0.2.
  */
 HOL_API int hol_chains_add_rigid(hol_chains *chains, int64_t n_bodies, const int64_t *sizes, const int64_t *atoms,
                                  const double *places, int64_t n_bonds, const int64_t *pairs, const double *lengths);
@@ -323,9 +329,9 @@ HOL_API int hol_chains_add_rigid_molecules(hol_chains *chains, int64_t n_molecul
                                            const double *lengths);
 
 /**
- * Two to four equal mass points that have the mass, the centre and the moments of inertia of a rigid body (an
- * equimomental system): how a body that is given by its inertia tensor comes to hol_chains_add_rigid. The points are
- * atoms of these masses, and what the body carries are massless sites of it, atoms of mass 0, with places in the same
+ * Finds two to four equal mass points that have the mass, the centre and the moments of inertia of a rigid body (an
+ * equimomental system). With them hol_chains_add_rigid takes a body that is given by its inertia tensor: the points are
+ * atoms of these masses, and all that the body carries are massless sites, atoms of mass 0 with places in the same
  * frame. docs/rigid.md.
  * @param[in]  mass      of the body, > 0
  * @param[in]  centre    [3], its centre of mass, in the frame of the places; NULL: the origin
@@ -336,39 +342,40 @@ HOL_API int hol_chains_add_rigid_molecules(hol_chains *chains, int64_t n_molecul
  * @param[out] masses    [4], of which n_points are written: mass / n_points each
  * @param[out] places    [4][3], likewise (Fortran: (3, 4))
  *
- * Moments are those of the tensor to rounding. Where the largest is above the sum of the others by no more than 1e-5 of
- * it, as digits of a file may leave it, the body is flat, or linear.
+ * The points have the moments of the tensor to rounding. If the largest moment is above the sum of the others by no
+ * more than 1e-5 of it, as decimals of a file may leave it, the body is taken as flat, or linear.
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE: the mass; numbers that are not finite; a tensor that is not symmetric,
- * is 0, has a negative moment, or one above the sum of the others, which no distribution of mass has. On an error
- *         nothing is written. Thread-safe. Since 0.3.
+ *         is 0, has a negative moment, or one above the sum of the others, which no distribution of mass has. On an
+ *         error nothing is written. Thread-safe. Since 0.3.
  */
 HOL_API int hol_equimomental_points(double mass, const double *centre, const double *inertia, int64_t *n_points,
                                     double *masses, double *places);
 
 /**
- * Adds linear relations among atoms, sum_i c_i r_i = 0 with constant c_i, and bonds of the molecules in which these
- * are: a site by its base and coefficients (r_s = a r_1 + b r_2 + ..), atoms that are one point (1, -1), centroids and
- * centres of mass of flexible groups that coincide. A relation is three equations, which have no coordinates in them:
- * motions, forces and velocities that it forbids are taken away to rounding. docs/rigid.md.
+ * Adds linear relations among atoms, sum_i c_i r_i = 0 with constant c_i, and the bonds of their molecules. Examples: a
+ * site by its base and coefficients (r_s = a r_1 + b r_2 + ..); atoms that are one point (1, -1); centroids and centres
+ * of mass of flexible groups that coincide. A relation is three equations whose coefficients do not depend on the
+ * coordinates: the library takes away all that it forbids of motions, forces and velocities, to rounding.
+ * docs/rigid.md.
  * @param[in,out] chains
  * @param[in] n_relations   >= 1
  * @param[in] sizes         [n_relations], how many atoms each has, >= 2
  * @param[in] atoms         [sum of sizes], the atoms of one relation after the other. An atom of mass 0 is a massless
- *                          site, as in a body; one of infinite mass is held where the caller has it: a centre of mass
- * is driven by moving the fixed atom that it is to be at, between r_ref and r, and by its velocity in v. Of
- * accelerations it has none
+ *                          site, as in a body; one of infinite mass is held where the caller has it. To drive a centre
+ *                          of mass, relate it to such a fixed atom, move the atom between r_ref and r, and give its
+ *                          velocity in v. A fixed atom has no acceleration
  * @param[in] coefficients  [sum of sizes]; those of a relation add up to 0, so that nothing depends on the origin
  * @param[in] n_bonds       >= 0; 0: relations alone
  * @param[in] pairs         [n_bonds][2], bonds of the molecules that the relations make, or NULL
  * @param[in] lengths       [n_bonds], as in hol_chains_add, or NULL. Copied.
  *
  * Relations that share atoms are of one molecule. All relations and bonds of a molecule have to be given in one call.
- * Images are taken along the bonds, and else from each atom of a relation to the next. Molecules with relations are
- * numbered and treated as those with bodies (hol_chains_add_rigid): G has all of the force, multipliers are those of
- * bonds; each relation takes three degrees of freedom. The work grows with the third power of the atoms of a molecule
- * that hang together by relations.
+ * Periodic images are taken along the bonds and, where there are none, from each atom of a relation to the next.
+ * Molecules with relations are numbered and treated as those with bodies (hol_chains_add_rigid): G is the whole
+ * constraint force, but only bonds have multipliers. Each relation takes three degrees of freedom. The work grows with
+ * the third power of the atoms of a molecule that hang together by relations.
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (sizes, coefficients, a relation that follows from the others, masses of
- * 0 whose places do not follow from others, a length, a bond in no molecule with a relation); HOL_ERR_INDEX;
+ *         0 whose places do not follow from others, a length, a bond in no molecule with a relation); HOL_ERR_INDEX;
  *         HOL_ERR_SHARED_ATOM (an atom of an earlier call); HOL_ERR_DEGENERATE; HOL_ERR_MEMORY. On an error nothing is
  *         added. Not thread-safe on one handle. Since 0.3.
  */
@@ -398,13 +405,14 @@ HOL_API int hol_chains_add_linear_molecules(hol_chains *chains, int64_t n_molecu
                                             const int64_t *pairs, const double *lengths);
 
 /**
- * Adds bonds whose periodic images are told, and not taken as the nearest ones: a bond of more than half the box (a
- * reaction coordinate in a small cell), or one that goes round it. The vector of bond k, with the atoms i and j as they
- * are given, is
+ * Adds bonds whose periodic images the caller gives, in place of the nearest ones: for a bond of more than half the box
+ * (a reaction coordinate in a small cell), or one that goes round it. The vector of bond k, with the atoms i and j as
+ * they are given, is
  *
  *     d = r_j - r_i + images[k][0] a + images[k][1] b + images[k][2] c
  *
- * with a, b, c the rows of the box as hol_chains_set_box has got it (of the reference those of its own box).
+ * with a, b, c the rows of the box as it was given to hol_chains_set_box (for the reference positions, the rows of
+ * their own box).
  * @param[in,out] chains
  * @param[in]     n_bonds  >= 0
  * @param[in]     pairs    [n_bonds][2]
@@ -412,12 +420,12 @@ HOL_API int hol_chains_add_linear_molecules(hol_chains *chains, int64_t n_molecu
  * @param[in]     images   [n_bonds][3], in numbers of box vectors; all 0: as the atoms stand (Fortran: (3, n_bonds)).
  *                         Copied.
  *
- * All bonds of these molecules are such bonds. Without a box, and along a vector that is none, images are not looked
- * at. Where a program moves atoms by box vectors between two calls, hol_chains_set_images tells it; within a position
- * step r_ref and r have the same images. Distances that depend on each other are no bodies here, and are found by the
- * calls that meet them. These molecules are numbered and treated as those with bodies (hol_chains_add_rigid), and take
- * some 1 to 6 microseconds for each few bonds: hol_metric, hol_inverse_create and hol_project_positions_along refuse
- * such sets or molecules (HOL_ERR_UNSUPPORTED).
+ * All bonds of these molecules are such bonds. Images are ignored without a box, and along a row of zeros. A program
+ * that moves atoms by box vectors between two calls says so by hol_chains_set_images; within a position step r_ref and
+ * r have the same images. Distances that depend on each other become no bodies here: the calls that meet them report
+ * them. These molecules are numbered and treated as those with bodies (hol_chains_add_rigid), and take some 1 to 6
+ * microseconds for each few bonds. hol_metric, hol_inverse_create and hol_project_positions_along refuse such sets or
+ * molecules (HOL_ERR_UNSUPPORTED).
  * @return as hol_chains_add_bonds; HOL_ERR_VALUE also for a bond between two fixed atoms and for images beyond 2^31. On
  *         an error nothing is added. Since 0.3.
  */
@@ -428,7 +436,7 @@ HOL_API int hol_chains_add_bonds_with_images(hol_chains *chains, int64_t n_bonds
  * New images of bonds that hol_chains_add_bonds_with_images has added.
  * @param[in,out] chains
  * @param[in]     images  [n_bonds][3], of all bonds of the set; 0 for those whose images are the nearest ones. Copied.
- * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (of a bond that was added without images they are not 0: the message
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (images that are not 0 for a bond that was added without: the message
  *         names it). On an error nothing is changed. Not thread-safe on one handle. O(n_bonds). Since 0.3.
  */
 HOL_API int hol_chains_set_images(hol_chains *chains, const int64_t *images);
@@ -472,8 +480,8 @@ HOL_API int hol_chains_set_masses(hol_chains *chains, const double *masses);
 
 /**
  * Counts atoms, bonds and molecules from `base`, 0 (default) or 1, in the lists that are given (hol_chains_add..), in
- * every number that the library returns and in its messages. For callers whose index lists come from Fortran.
- * Before the first molecule is added: numbers keep their meaning.
+ * every number that the library returns and in its messages. For callers whose index lists come from Fortran. Call it
+ * before the first molecule is added, so that numbers keep their meaning.
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE; HOL_ERR_STATE (molecules have been added). Since 0.1.
  */
 HOL_API int hol_chains_set_index_base(hol_chains *chains, int base);
@@ -485,10 +493,10 @@ typedef enum hol_bodies HOL_IS_INT {
 } hol_bodies;
 
 /**
- * Whether distances that depend on each other become rigid bodies, from the next call that adds molecules on: a program
- * that reads a multiplier of its own for each bond, or calls hol_metric, hol_inverse_create or
- * hol_project_positions_along, which know no bodies, has them refused at once. hol_chains_roles tells what became of
- * each bond.
+ * Whether distances that depend on each other become rigid bodies, from the next call that adds molecules on. Some
+ * programs cannot use such bodies: they read a multiplier for each bond, or call hol_metric, hol_inverse_create or
+ * hol_project_positions_along, which know no bodies. With HOL_BODIES_GIVEN such distances are refused at once.
+ * hol_chains_roles tells what became of each bond.
  * @param[in,out] chains
  * @param[in]     which
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE. Not thread-safe on one handle. Since 0.3.
@@ -504,17 +512,17 @@ HOL_API int hol_chains_set_bodies(hol_chains *chains, hol_bodies which);
  * Any three vectors that span the lattice are the same box (since 0.2), also rows that are not reduced, as a tilt of
  * many sides ("flip no" of LAMMPS): images are taken in a cell that is as wide as the lattice has one. The image is the
  * right one for bonds shorter than half the smallest distance between opposite faces of that cell; molecules may be
- * larger, and their cycles may go round the box (networks, zeolites). A network that does so has 3 n - 3 freedoms for
- * its bonds, not 3 n - 6: with more bonds than the latter it is added after the box has been set. May be set again
- * before every call; that takes no time. An orthorhombic box (zeros beside the diagonal) makes calls up to 1.6 times as
- * long, any other 1.1 to 1.9 times. Programs whose molecules are whole need none.
+ * larger, and their cycles may go round the box (networks, zeolites). A network that goes round the box has 3 n - 3
+ * freedoms for its bonds, not 3 n - 6. If it has more than 3 n - 6 bonds, set the box before you add it. The box may be
+ * set again before every call; that takes no time. An orthorhombic box (zeros beside the diagonal) makes calls up to
+ * 1.6 times as long, any other 1.1 to 1.9 times. Programs whose molecules are whole need none.
  * @return HOL_OK; HOL_ERR_NULL (chains); HOL_ERR_VALUE (not finite, or no cell; since 0.2 that cell is narrower than
  *         twice the longest bond). On an error nothing is changed. Not thread-safe on one handle. Since 0.1.
  */
 HOL_API int hol_chains_set_box(hol_chains *chains, const double *box);
 
 /**
- * Box of the reference positions of hol_project_positions, if it is another than that of the positions: barostats that
+ * Box of the reference positions of hol_project_positions, where it is not the box of the positions: for barostats that
  * deform the cell between the two.
  * @param[in,out] chains
  * @param[in] box  as in hol_chains_set_box; NULL (default): that of hol_chains_set_box, also when it is set later
@@ -523,8 +531,8 @@ HOL_API int hol_chains_set_box(hol_chains *chains, const double *box);
 HOL_API int hol_chains_set_reference_box(hol_chains *chains, const double *box);
 
 /**
- * Rate at which the box changes, d(box)/dt = L box, and the atoms with it: r' = v + L r with v what the program calls
- * velocity (barostats in the equations of motion, SLLOD, shear). The default is none.
+ * Rate at which the box changes, d(box)/dt = L box, and the atoms with it: r' = v + L r, where v is the velocity of the
+ * program (barostats in the equations of motion, SLLOD, shear). The default is none.
  * @param[in,out] chains
  * @param[in] L  [3][3], 1/time: (L x)_a = sum_b L_ab x_b, row after row (Fortran: L(b,a), columns are rows here); NULL
  *               or zeros: none. Copied.
@@ -559,17 +567,17 @@ typedef enum hol_when HOL_IS_INT {
 } hol_when;
 
 /**
- * When hol_project_positions compares positions with the lengths. A wrong unit, order or numbering, a molecule cut by a
- * face of the cell, a box forgotten or stale: all of these have solutions, and Newton's method would find them, with
- * atoms moved by half the cell. With HOL_AT_START (default)
+ * When hol_project_positions compares positions with the lengths. Positions with a wrong unit, order or numbering, a
+ * molecule that a face of the cell cuts, a box that is forgotten or stale: the equations still have solutions, and
+ * Newton's method would find them, with atoms moved by half the cell. With HOL_AT_START (default)
  *
- * - the first call returns HOL_ERR_LENGTHS and moves nothing if a bond of the reference is off by more than a tenth of
- *   its length or longer than half the box, or if bonds across faces of the box are off by more than 1e-3 of their
- *   length and three times as much as any inside (a box that is a hundredth off does that); HOL_ERR_NO_CONVERGENCE, and
- * likewise moves nothing, if the reference fits but a bond of the positions to be projected is more than 5 times as
- * long as it should be. So does the first call after new molecules, after hol_chains_set_active, after lengths of more
- * than 1.5 times or less than two thirds of those before, and after a box that differs by more than 2 per cent. It
- * costs one pass over the bonds, once.
+ * - the first call compares the reference. It moves nothing and returns HOL_ERR_LENGTHS if a bond is off by more than a
+ *   tenth of its length or longer than half the box, or if bonds across faces of the box are off by more than 1e-3 of
+ *   their length and by three times as much as any inside (a box that is a hundredth off does that). If the reference
+ *   fits, but a bond of the positions to be projected is more than 5 times as long as it should be, it moves nothing
+ *   and returns HOL_ERR_NO_CONVERGENCE. The same is done in the first call after new molecules, after
+ *   hol_chains_set_active, after lengths of more than 1.5 times or less than two thirds of those before, and after a
+ *   box that differs by more than 2 per cent. It costs one pass over the bonds, once.
  * - in every later call a molecule with a bond of more than 5 times its length in the positions to be projected is bad
  *   (HOL_ERR_NO_CONVERGENCE, as any step that is too long): it is left as it is, all others are complete. That costs
  *   under 2 per cent of the call.
@@ -577,9 +585,8 @@ typedef enum hol_when HOL_IS_INT {
  * HOL_ALWAYS makes calls 1.6 to 2 times as long, of every shape.
  *
  * The message names the worst bond, its atoms, its length and the length wanted, whether a box is set, and the likely
- * causes: of a reference its unit, order or box; of positions to be projected, whose reference fits, forces or time
- * step. A crude start (a model built by hand; files with two decimals are no such case) calls hol_impose once
- * (docs/recipes.md).
+ * causes: for a reference its unit, order or box; for positions whose reference fits, the forces or the time step. For
+ * a crude start (a model built by hand, but not a file with two decimals) call hol_impose once (docs/recipes.md).
  *
  * @param[in,out] chains
  * @param[in]     when    an hol_when
@@ -591,8 +598,9 @@ HOL_API int hol_chains_set_checks(hol_chains *chains, hol_when when);
 typedef enum hol_which_box HOL_IS_INT { HOL_BOX = 0, HOL_REFERENCE_BOX = 1 } hol_which_box;
 
 /**
- * Compares positions with the lengths now, as the first call of hol_project_positions does with its reference, whatever
- * hol_chains_set_checks says: for programs that use forces or velocities alone, which take bond vectors as they are.
+ * Compares positions with the lengths now, whatever hol_chains_set_checks says, as the first call of
+ * hol_project_positions does with its reference. For programs that use forces or velocities alone, which take bond
+ * vectors as they are.
  * @param[in] chains
  * @param[in] r    positions [n_atoms][3]
  * @param[in] box  HOL_BOX or HOL_REFERENCE_BOX: the box that they belong to
@@ -611,13 +619,13 @@ HOL_API int hol_chains_check(const hol_chains *chains, const double *r, hol_whic
 HOL_API int hol_chains_set_threads(hol_chains *chains, int n_threads);
 
 /**
- * Whether calls keep a status and a number of iterations for each molecule, for hol_outcomes. By default they don't,
- * and it costs nothing.
+ * Whether calls keep a status and a number of iterations for each molecule, which hol_outcomes returns. By default they
+ * keep none, and nothing is spent on it.
  *
- * Kept, molecules go through the kernels one by one, not several side by side: results for molecules are the same, sums
- * over them (virial, energy) may differ in the last digits, and calls with many small molecules take several times as
- * long. So it is for the search for what is wrong, or for a call made again after one that failed: a call that fails
- * leaves bad molecules as they were, and to make it again names them all. 8 bytes per molecule of each thread.
+ * If they are kept, molecules go through the kernels one by one, not several side by side: results for molecules are
+ * the same, sums over them (virial, energy) may differ in the last digits, and calls with many small molecules take
+ * several times as long. So set it to search for a fault, or after a call has failed: a failed call leaves bad
+ * molecules as they were, and the same call made again names all of them. It takes 8 bytes per molecule and thread.
  * @param[in,out] chains
  * @param[in]     keep    0 or 1
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE. Not thread-safe on one handle. Since 0.2.
@@ -625,17 +633,17 @@ HOL_API int hol_chains_set_threads(hol_chains *chains, int n_threads);
 HOL_API int hol_chains_set_outcomes(hol_chains *chains, int keep);
 
 /**
- * What the calling thread's last call of hol_forces, hol_solve, hol_project_velocities, hol_project_positions,
- * hol_project_positions_along, hol_metric or hol_impose with this handle has done with each molecule: where
- * hol_error_location names the first bad one, this names all, and why each is bad. Only of calls made while
- * hol_chains_set_outcomes has it kept.
+ * The outcome of each molecule in the calling thread's last call with this handle of hol_forces, hol_solve,
+ * hol_project_velocities, hol_project_positions, hol_project_positions_along, hol_metric or hol_impose.
+ * hol_error_location names the first bad molecule; this names all, and why each is bad. Outcomes are kept only while
+ * hol_chains_set_outcomes says so.
  * @param[in]  chains
- * @param[out] status      [n_molecules] an hol_status each: HOL_OK, or what the call would have returned were it the
- * only bad molecule. Or NULL
- * @param[out] iterations  [n_molecules] linear solves that the positions of the molecule took, of hol_impose steps; 0
- *                         where it obeyed the tolerance. Forces, velocities and given right-hand sides: rounds of the
- *                         iteration by which a network is solved (docs/molecules.md), 0 of all other molecules, which
- *                         are solved directly. Of a bad molecule what it took as far as that is known, or 0. Or NULL
+ * @param[out] status      [n_molecules] an hol_status each: HOL_OK, or the status that the call would have returned if
+ *                         this were the only bad molecule. Or NULL
+ * @param[out] iterations  [n_molecules] for positions: how many linear solves the molecule took (hol_impose: steps); 0
+ *                         if it obeyed the tolerance. For forces, velocities and given right-hand sides: rounds of the
+ *                         iteration of a network (docs/molecules.md); 0 for all other molecules, which are solved
+ *                         directly. For a bad molecule: the number as far as it is known, or 0. Or NULL
  *
  * An inactive molecule has HOL_OK and 0. Where positions or forces were refused before anything was done
  * (in the first step, hol_chains_set_checks), all molecules that do not fit have that status.
@@ -657,21 +665,21 @@ HOL_API int hol_chains_set_active(hol_chains *chains, const unsigned char *activ
 /**
  * Tolerance of hol_project_positions: a molecule is done when |d.d - a^2| / a^2 <= tolerance for each of its bonds.
  * @param[in,out] chains
- * @param[in] tolerance  > 0 and < 1, or 0 for the default: the rounding of the coordinates, i.e. of the largest
- * coordinate of the molecule in the element type of the caller's positions. A tolerance below what the coordinates can
- * carry means the default. A loose one lets the energy drift, and saves little: 1e-8 takes a fifth of the time off
- * chains, trees and rings, two fifths off frames of triangles, and none off water and atoms with three others, which
- * are solved to the rounding at once (docs/recipes.md has a table). A molecule that is within the tolerance already is
- * left where it is.
+ * @param[in] tolerance  > 0 and < 1, or 0 for the default: the rounding of the molecule's largest coordinate in the
+ *                       element type of the caller's positions. A tolerance that is smaller than this rounding means
+ *                       the default. A loose one lets the energy drift, and saves little: 1e-8 saves a fifth of the
+ *                       time of chains, trees and rings, two fifths of that of frames of triangles, and nothing of
+ *                       water and of atoms with three others, which are solved to the rounding at once (docs/recipes.md
+ *                       has a table). A molecule that is within the tolerance already is left where it is.
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE. Not thread-safe on one handle. Since 0.1.
  */
 HOL_API int hol_chains_set_tolerance(hol_chains *chains, double tolerance);
 
 /**
  * Bound on the iterations of hol_project_positions for a molecule of any shape, 1..1000. The default is 50; a
- * well-posed step needs 2 to 5. A smaller bound makes no step faster that converges. What needs more is
- * HOL_ERR_NO_CONVERGENCE. With less than 20 no root is followed from the reference (hol_project_positions); else so
- * many points of its path are looked at.
+ * well-posed step needs 2 to 5. A molecule that needs more iterations is HOL_ERR_NO_CONVERGENCE; a smaller bound makes
+ * no step faster that converges. A root that is followed from the reference (hol_project_positions) is looked at in up
+ * to four times as many points of its path; with a bound below 20 no root is followed.
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE. Not thread-safe on one handle. Since 0.1.
  */
 HOL_API int hol_chains_set_max_iterations(hol_chains *chains, int max_iterations);
@@ -764,15 +772,15 @@ HOL_API int hol_chains_masses(const hol_chains *chains, double *masses);
 /**
  * A box, as it was given.
  * @param[in]  chains
- * @param[in]  which  HOL_BOX; or HOL_REFERENCE_BOX: that of the reference, which is the other one where none was set
+ * @param[in]  which  HOL_BOX; or HOL_REFERENCE_BOX: the box of the reference, which is HOL_BOX if no other was set
  * @param[out] box    [3][3], zeros if there is none
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (which). Since 0.3.
  */
 HOL_API int hol_chains_box(const hol_chains *chains, hol_which_box which, double *box);
 
 /**
- * What has been set, or is the default: the index base; hol_bodies; hol_when; threads; 1 or 0, whether outcomes are
- * kept; the two tolerances and the bounds, 0 where that means a default. 0 if chains is NULL. Since 0.3.
+ * Settings, as they were set or by default: the index base; hol_bodies; hol_when; threads; whether outcomes are kept (1
+ * or 0); the two tolerances and the two bounds (0: the default). All are 0 if chains is NULL. Since 0.3.
  */
 HOL_API int hol_chains_index_base(const hol_chains *chains);
 HOL_API int hol_chains_bodies(const hol_chains *chains);
@@ -801,7 +809,8 @@ HOL_API int hol_chains_box_rate(const hol_chains *chains, double *L);
 HOL_API int hol_chains_active(const hol_chains *chains, unsigned char *active);
 
 /**
- * The labels that were set; of what has none its number, counted from the index base. Each output may be NULL.
+ * The labels that were set. An atom or molecule without a label has its number, counted from the index base. Each
+ * output may be NULL.
  * @param[in]  chains
  * @param[out] atoms      [n_atoms]
  * @param[out] molecules  [n_molecules]
@@ -829,13 +838,14 @@ typedef enum hol_role HOL_IS_INT {
 HOL_API int hol_chains_roles(const hol_chains *chains, int *roles, int64_t *removed);
 
 /**
- * Where each molecule's bonds stand in the arrays per bond, if molecule follows molecule there: as after
- * hol_chains_add and hol_chains_add_block alone, without bonds between fixed atoms. hol_chains_bonds tells it always.
+ * Where each molecule's bonds stand in the arrays per bond, if the bonds of one molecule follow those of the one
+ * before. They do if all bonds came by hol_chains_add and hol_chains_add_block, and none of them is between fixed
+ * atoms. hol_chains_bonds tells it in all cases.
  * @param[in] chains
  * @param[out] offsets  [n_molecules+1]: molecule m has the bonds offsets[m] .. offsets[m+1]-1; counted from the index
  *                      base. The order within a molecule is that of hol_chains_bonds
- * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (the bonds stand in another order; the message names the first molecule
- *         of which that is so; nothing is written). Since 0.1.
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (the bonds stand in another order; the message names the first such
+ *         molecule; nothing is written). Since 0.1.
  */
 HOL_API int hol_chains_offsets(const hol_chains *chains, int64_t *offsets);
 
@@ -853,18 +863,18 @@ HOL_API int64_t hol_chains_degrees_of_freedom(const hol_chains *chains, int dime
 HOL_API int64_t hol_chains_memory(const hol_chains *chains);
 
 /**
- * How far the lengths of distances that depend on each other have been adjusted (hol_chains_add_bonds): of a file's
- * decimals, no places in space have quite these lengths.
+ * How far the library has adjusted the lengths of distances that depend on each other (hol_chains_add_bonds): no places
+ * in space have quite the lengths that a file gives with few decimals.
  * @param[in]  chains
- * @param[out] largest  by which part of it the length has been changed that was changed most; 0 if none was
- * @param[out] bond     its number, or NULL; -1 if no length was changed. hol_chains_molecules_of_bonds tells the
- * molecule
+ * @param[out] largest  largest change of a length, as a part of that length; 0 if none was changed
+ * @param[out] bond     the bond with this change, or NULL; -1 if no length was changed. hol_chains_molecules_of_bonds
+ *                      tells its molecule
  * @return HOL_OK; HOL_ERR_NULL (chains or largest). Since 0.3.
  */
 HOL_API int hol_chains_adjustment(const hol_chains *chains, double *largest, int64_t *bond);
 
 /**
- * Which distances others imply (hol_chains_add_bonds): they are in no equation, and their multipliers are 0.
+ * Which distances follow from others (hol_chains_add_bonds): they are in no equation, and their multipliers are 0.
  * @param[in]  chains
  * @param[out] implied  [n_bonds], 1 or 0
  * @return HOL_OK; HOL_ERR_NULL. Since 0.3.
@@ -872,10 +882,10 @@ HOL_API int hol_chains_adjustment(const hol_chains *chains, double *largest, int
 HOL_API int hol_chains_implied(const hol_chains *chains, unsigned char *implied);
 
 /**
- * Atoms of mass 0 that bonds tie to something rigid: to a body, or to an atom of a triangle of bonds. Each is held in
- * space, and its molecule with it. Where a massless site was meant, as M of TIP4P, it belongs into a body
- * (hol_chains_add_rigid). To be asked once after adding; nothing is wrong with a molecule that is to be tethered, and
- * an atom of infinite mass (hol_chains_create), which is held on purpose, is never named.
+ * Atoms of mass 0 that bonds tie to something rigid: to a body, or to an atom of a triangle of bonds. Each of them is
+ * held in space, and so is its molecule. If a massless site was meant, as M of TIP4P, add it as an atom of a body
+ * (hol_chains_add_rigid). Ask once after adding. A molecule may be tethered so on purpose; an atom of infinite mass
+ * (hol_chains_create) is held on purpose, and is never named.
  * @param[in]  chains
  * @param[out] held  [n_atoms], 1 or 0
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_MEMORY. O(n_atoms + n_bonds). Since 0.3.
@@ -883,8 +893,9 @@ HOL_API int hol_chains_implied(const hol_chains *chains, unsigned char *implied)
 HOL_API int hol_chains_held_sites(const hol_chains *chains, unsigned char *held);
 
 /**
- * By which part of them lengths of distances that depend on each other may be adjusted, so that they are those of
- * places in space; what misses these by more is refused when it is added. It holds for what is added later.
+ * How far the library may adjust the lengths of distances that depend on each other, as a part of each length, so that
+ * places in space have these lengths. Lengths that need more are refused when they are added. It holds for what is
+ * added later.
  * @param[in,out] chains
  * @param[in]     tolerance  0 .. 0.01; 1e-3 until it is set, 0: lengths must be right to rounding
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE. Not thread-safe on one handle. Since 0.3.
@@ -892,9 +903,9 @@ HOL_API int hol_chains_held_sites(const hol_chains *chains, unsigned char *held)
 HOL_API int hol_chains_set_length_tolerance(hol_chains *chains, double tolerance);
 
 /**
- * Bound on the memory that a set of molecules takes. Of a molecule with many cycles (a lattice, a sheet) the
- * elimination fills its matrix: adding it counts what that takes before it takes anything, and refuses it with
- * HOL_ERR_MEMORY and both numbers in the message where that, with what the set has, is more than the bound.
+ * Bound on the memory that a set of molecules takes. The elimination of a molecule with many cycles (a lattice, a
+ * sheet) fills its matrix. The call that adds the molecule counts this memory before it takes any. If it is more than
+ * the bound, together with what the set has, the call returns HOL_ERR_MEMORY with both numbers in the message.
  * @param[in,out] chains
  * @param[in]     bytes  > 0, or 0 for the default: a quarter of the machine's memory. It holds for what is added later,
  *                       and for the scratch that calls need for it.
@@ -920,7 +931,7 @@ typedef struct hol_view {
     int32_t reserved; /**< 0 */
 } hol_view;
 
-/** The same of an input, which is only read. Since 0.3. */
+/** A view of an input, which is only read. Since 0.3. */
 typedef struct hol_const_view {
     const void *x, *y, *z;
     int64_t stride;
@@ -991,10 +1002,12 @@ HOL_API int hol_forces_view(const hol_chains *chains, const hol_const_view *r, c
                             double *virial);
 
 /**
- * Multipliers of given right-hand sides: Z lambda = rhs, Z_kl = sum_i w_i grad_i sigma_k . grad_i sigma_l, the matrix
- * that hol_forces solves, for which rhs_k = 2 d_k . (w_j f_j - w_i f_i) + 2 |v_j - v_i|^2. Any other right-hand side
- * makes sigma_k'' what the caller wants it to be: with forces f + G, sigma_k'' = (its value without G) - rhs_k. For
- * terms that relax errors, prescribed rates, other thermostats.
+ * Multipliers of given right-hand sides: solves
+ *     Z lambda = rhs,   Z_kl = sum_i w_i grad_i sigma_k . grad_i sigma_l.
+ * hol_forces solves the same equations with
+ *     rhs_k = 2 d_k . (w_j f_j - w_i f_i) + 2 |v_j - v_i|^2.
+ * With other right-hand sides the caller chooses sigma_k'': with forces f + G, sigma_k'' is its value without G, less
+ * rhs_k. For terms that relax errors, prescribed rates, other thermostats.
  *
  * @param[in]     chains
  * @param[in]     r       positions [n_atoms][3]
@@ -1032,14 +1045,15 @@ HOL_API int hol_factors_create(const hol_chains *chains, hol_factors **factors);
 HOL_API void hol_factors_destroy(hol_factors *factors);
 
 /**
- * Makes the factors at these positions, in the box and with the rate of the box that the set has now; they belong to
- * these until the next update. It costs about what hol_forces does, allocates at the first time and after a change of
- * the set, and keeps 5 to 16 doubles per bond and 4 per atom. So it pays from about three solves on.
+ * Makes the factors at these positions, in the box and with the rate of the box that the set has now. They hold for
+ * these until the next update. An update costs about as much as hol_forces, allocates the first time and after a change
+ * of the set, and keeps 5 to 16 doubles per bond and 4 per atom. So factors pay from about three solves on.
  *
- * Chains, trees and rings of up to 2048 bonds and triangles are kept; chains of more than 256 bonds for
- * hol_factors_solve alone. Of larger ones, other cycles, rigid bodies, molecules that plain products do not answer for,
- * and all of a set that shares fixed atoms among molecules, the positions are kept: their solves cost what hol_forces
- * and hol_solve do. All are right to the bound of these.
+ * Factors are kept for chains, trees and rings of up to 2048 bonds and for triangles; for chains of more than 256 bonds
+ * only hol_factors_solve uses them. For all others only the positions are kept, and solves cost as much as hol_forces
+ * and hol_solve: larger molecules, other cycles, rigid bodies, molecules that need more than plain products, and all
+ * molecules of a set in which molecules share fixed atoms. All results are as accurate as those of hol_forces and
+ * hol_solve.
  * @param[in,out] factors
  * @param[in]     r        positions [n_atoms][3]. Copied
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_NOT_FINITE; HOL_ERR_DEGENERATE; HOL_ERR_MEMORY. After a bad molecule all others
@@ -1061,7 +1075,7 @@ HOL_API int hol_factors_update_view(hol_factors *factors, const hol_const_view *
  * @param[in]     mode     HOL_WRITE or HOL_ADD
  * @param[out]    virial   [3][3], or NULL
  * @return as hol_forces; HOL_ERR_STATE (no update yet, or the set has been changed since). hol_outcomes knows nothing
- * of it. Thread-safe on one object. Since 0.3.
+ *         of this call. Thread-safe on one object. Since 0.3.
  */
 HOL_API int hol_factors_forces(const hol_factors *factors, const double *v, const double *f, double *lambda,
                                double *tension, double *g, hol_mode mode, double *virial);
@@ -1090,31 +1104,31 @@ HOL_API int hol_factors_solve_view(const hol_factors *factors, int64_t n_rhs, co
                                    const hol_view *g, hol_mode mode, double *virial);
 
 /**
- * What given multipliers do: the forces or impulses on the atoms, tensions and virials of the bonds; of the multipliers
- * that hol_forces, hol_solve, hol_project_velocities or hol_project_positions found, or of their means over steps.
+ * Forces or impulses on the atoms, tensions and virials of the bonds, for given multipliers: those that hol_forces,
+ * hol_solve, hol_project_velocities or hol_project_positions found, or their means over steps.
  *
  * @param[in]     chains
- * @param[in]     r            positions [n_atoms][3] with which the multipliers were found: r; of hol_project_positions
- *                             r_ref
+ * @param[in]     r            positions [n_atoms][3] with which the multipliers were found: the r of that call; for
+ *                             hol_project_positions its r_ref
  * @param[in]     box          HOL_BOX: r belongs to that of hol_chains_set_box; HOL_REFERENCE_BOX: to that of
  *                             hol_chains_set_reference_box, as r_ref does
  * @param[in]     lambda       [n_bonds]; not read for bonds between two fixed atoms
  * @param[out]    tension      2 lambda |d| [n_bonds], or NULL
- * @param[in,out] g            G_i = - sum_k lambda_k grad_i sigma_k [n_atoms][3], or NULL: the constraint force;
- *                             the impulse m_i dv_i of hol_project_velocities; of hol_project_positions the force over
- *                             the step, which times dt is the impulse m_i dv_i and times dt^2 w_i the displacement.
- *                             On fixed atoms too: what holds them has to bear it
+ * @param[in,out] g            G_i = - sum_k lambda_k grad_i sigma_k [n_atoms][3], or NULL. With multipliers of
+ *                             hol_forces it is the constraint force, with those of hol_project_velocities the impulse
+ *                             m_i dv_i. With those of hol_project_positions it is the force over the step: times dt,
+ *                             the impulse m_i dv_i; times dt^2 w_i, the displacement. Fixed atoms have it, too: it is
+ *                             what their holder has to bear
  * @param[in]     mode         HOL_WRITE or HOL_ADD, as in hol_forces
  * @param[out]    bond_virial  [n_bonds][6] (Fortran: (6, n_bonds)), or NULL: xx xy xz yy yz zz of
  *                             - 2 lambda_k d_k (x) d_k. Their sum over bonds is the virial of the call that found
  *                             lambda; half of each at either atom is a virial per atom
  * @param[out]    virial       [3][3], their sum over active molecules, or NULL
  *
- * Multipliers of hol_project_velocities leave out what its last correction of rounding changes: G agrees with m dv to
+ * The multipliers of hol_project_velocities do not contain its last correction of rounding. So G agrees with m dv to
  * the rounding of v.
- * @return HOL_OK; HOL_ERR_NULL (chains, r or lambda); HOL_ERR_VALUE (box, mode); HOL_ERR_NOT_FINITE;
- *         HOL_ERR_MEMORY. Inactive molecules are neither read nor written. Thread-safe on one handle. O(n_bonds). Since
- * 0.2.
+ * @return HOL_OK; HOL_ERR_NULL (chains, r or lambda); HOL_ERR_VALUE (box, mode); HOL_ERR_NOT_FINITE; HOL_ERR_MEMORY.
+ *         Inactive molecules are neither read nor written. Thread-safe on one handle. O(n_bonds). Since 0.2.
  */
 HOL_API int hol_reactions(const hol_chains *chains, const double *r, hol_which_box box, const double *lambda,
                           double *tension, double *g, hol_mode mode, double *bond_virial, double *virial);
@@ -1127,9 +1141,9 @@ HOL_API int hol_reactions_view(const hol_chains *chains, const hol_const_view *r
 /* ------------------------------------------------------------------------------------------------ velocity level */
 
 /**
- * Projects velocities onto the constraints (the second half of RATTLE): after the call d_k . (v_j - v_i) = 0 for
- * every bond, or d_k . (v_j - v_i + L d_k) = 0 with hol_chains_set_box_rate (since 0.2). The change is the one of least
- * kinetic energy, v_i += w_i G_i, with G_i as above (hol_reactions gives it), by one factorization.
+ * Projects velocities onto the constraints (the second half of RATTLE): after the call d_k . (v_j - v_i) = 0 for every
+ * bond, or d_k . (v_j - v_i + L d_k) = 0 with hol_chains_set_box_rate (since 0.2). The change v_i += w_i G_i,
+ * with G_i as above (hol_reactions gives it), is the one of least kinetic energy, and is found by one factorization.
  * docs/theory.md (13)-(14).
  *
  * @param[in]     chains
@@ -1168,26 +1182,26 @@ typedef struct hol_report {
  * (s = +1 at atom j of bond k, -1 at atom i) has |d_k| = a_k for every bond, to the rounding of the coordinates, by
  * Newton's method with the exact Jacobian. docs/theory.md (15)-(19), docs/integrators.md.
  *
- * These equations are quadratic, and may have several roots. The one meant is that of the reference, where all lambda
- * are 0, as it grows while r goes straight from r_ref to where it is. Newton's method comes there in ordinary steps. A
- * molecule for which it fails is looked at alone, and so is one with a bond of |d.d - a^2| > 0.15 a^2 in r, or of more
- * than 0.5 a^2 in a linear chain: its root is tested, or followed from the reference. Where that comes to an end before
- * r there is none (HOL_ERR_NO_CONVERGENCE: halve the step), though bonds that turn round might have the lengths.
+ * These equations are quadratic and may have several roots. The right one begins at the reference, where all lambda are
+ * 0, and changes with r while r goes straight from r_ref to where it is. In ordinary steps Newton's method finds it. A
+ * molecule is looked at alone if Newton's method fails, or if r has a bond with |d.d - a^2| > 0.15 a^2 (0.5 a^2 in a
+ * linear chain): its root is tested, or followed from the reference. If the root ends before r, there is none
+ * (HOL_ERR_NO_CONVERGENCE: halve the step), though the lengths might be reached by bonds that turn round.
  * docs/stability.md says what is guaranteed, and the cost.
  *
  * @param[in]     chains
- * @param[in]     r_ref   positions before the drift [n_atoms][3]; may be r itself (in Fortran: docs/fortran.md). Only
- *                        differences within a molecule are used: each may stand anywhere, at an origin of its own.
- *                        With r itself long chains and large trees take a copy of it first
+ * @param[in]     r_ref   positions before the drift [n_atoms][3]; may be r itself (in Fortran: docs/fortran.md); long
+ *                        chains and large trees then copy it first. Only differences within a molecule are used: each
+ *                        molecule may stand anywhere, at an origin of its own
  * @param[in,out] r       positions after the drift [n_atoms][3]; in: unconstrained, out: constrained
- * @param[in,out] v       velocities [n_atoms][3], or NULL; v_i += dt w_i G_i, the displacement over dt. Only added to:
- *                        what is there is not checked, and a NaN stays one
+ * @param[in,out] v       velocities [n_atoms][3], or NULL; v_i += dt w_i G_i, the displacement over dt. It is only
+ *                        added to: its values are not checked, and a NaN stays a NaN
  * @param[in]     dt      time step, time, > 0 and finite
  * @param[in,out] lambda  multipliers [n_bonds], force/length, or NULL. The constraint force over a leap-frog step; half
  *                        of it for velocity Verlet, whose position update carries dt^2/2.
  * @param[in]     guess   0, or 1: lambda holds a first guess, the multipliers of the last step. It saves a solve in
- *                        steps that take four or more; in usual ones it costs more than it saves (the call takes 1.2
- *                        to 3 times as long). Not used in coils of more than about 1000 bonds
+ *                        steps that take four or more. In usual steps it costs more than it saves: the call takes 1.2
+ *                        to 3 times as long. Coils of more than about 1000 bonds do not use it
  * @param[out]    virial  [3][3], energy, or NULL: sum_i r_ref,i (x) G_i = - sum_k 2 lambda_k b_k (x) b_k
  * @param[out]    report  or NULL; written whenever the arguments are valid, also if molecules fail
  * @return HOL_OK; HOL_ERR_NULL (chains, r_ref or r; lambda with guess = 1); HOL_ERR_VALUE (dt, guess);
@@ -1205,14 +1219,13 @@ HOL_API int hol_project_positions_view(const hol_chains *chains, const hol_const
                                        hol_report *report);
 
 /**
- * hol_project_positions with bond vectors in place of reference positions, for programs that keep those of the
- * beginning of a step: b_k = r_j - r_i of bond k, from the first atom of the bond as it was given to the second, images
- * taken.
+ * hol_project_positions with bond vectors in place of reference positions, for programs that keep the bond vectors of
+ * the beginning of a step: b_k = r_j - r_i, the nearest image, from the first atom of bond k to the second, as the bond
+ * was given.
  *
  * @param[in]     chains
  * @param[in]     b        [n_bonds][3] (Fortran: (3, n_bonds)), in the order in which the bonds were given. Not read
- *                         for bonds between two fixed atoms. The reference box is used for cycles that go round it
- *                         alone
+ *                         for bonds between two fixed atoms. The reference box is used only for cycles that go round it
  * @param[in,out] r        this and all others as in hol_project_positions
  * @param[in,out] v        or NULL
  * @param[in]     dt       time step
@@ -1221,13 +1234,13 @@ HOL_API int hol_project_positions_view(const hol_chains *chains, const hol_const
  * @param[out]    virial   or NULL
  * @param[out]    report   or NULL
  *
- * The vectors are laid one after the other, from an origin at the first atom of each molecule, each rounded once as
- * coordinates there are: results are those of hol_project_positions with such coordinates. In a molecule with cycles, a
- * vector that the others determine is taken from them; it must agree with them to a thousandth of its length, but for
- * sides of the reference box where a cycle goes round that.
+ * The vectors are added up from an origin at the first atom of each molecule, with one rounding each, as coordinates
+ * there have. Results are those of hol_project_positions with such coordinates. In a molecule with cycles some vectors
+ * follow from the others and are taken from these; they must agree to a thousandth of their length, except for sides of
+ * the reference box where a cycle goes round it.
  * @return as hol_project_positions; HOL_ERR_UNSUPPORTED (molecules with rigid bodies); HOL_ERR_NOT_FINITE (a vector)
- * and HOL_ERR_DEGENERATE (vectors that do not close their cycle) with nothing changed at all. O(n_bonds) more, by one
- * thread. Since 0.2.
+ *         and HOL_ERR_DEGENERATE (vectors that do not close their cycle) with nothing changed at all. It costs
+ *         O(n_bonds) more, by one thread. Since 0.2.
  */
 HOL_API int hol_project_positions_along(const hol_chains *chains, const double *b, double *r, double *v, double dt,
                                         double *lambda, int guess, double *virial, hol_report *report);
@@ -1238,10 +1251,10 @@ HOL_API int hol_project_positions_along_view(const hol_chains *chains, const hol
                                              hol_report *report);
 
 /**
- * The error that a reference itself had: of the last that a call at the position level with this handle, by whichever
- * thread, has compared with the lengths: those of the first call and after changes; with HOL_ALWAYS all
- * (hol_chains_set_checks); with HOL_NEVER those of calls with a report. It is measured before anything is moved. Each
- * output may be NULL.
+ * The error of a reference, before anything is moved: of the last reference that a call at the position level has
+ * compared with the lengths, with this handle, in any thread. Calls that compare (hol_chains_set_checks): with
+ * HOL_AT_START the first one and the first after a change; with HOL_ALWAYS all; with HOL_NEVER those with a report.
+ * Each output may be NULL.
  * @param[in]  chains
  * @param[out] error     largest |b.b - a^2| / a^2 over active molecules
  * @param[out] molecule  its number, -1 if there is none
@@ -1295,12 +1308,12 @@ HOL_API int hol_residuals_view(const hol_chains *chains, const hol_const_view *r
 
 /**
  * Moves positions that lie anywhere onto the constraints: a model built by hand, coordinates of a builder, another
- * force field's lengths. hol_project_positions with r_ref = r does it where bonds are off by a third or less, and with
- * HOL_NEVER above a tenth (hol_chains_set_checks); this does it from bonds several times too long or too short, too.
- * Each step of Newton's method goes along the bonds as they are then, by what w G allows, and only so far that no bond
- * changes by more than a third; near the end steps are whole ones, and the result is right to the rounding of the
- * coordinates. A molecule that does not get there begins again twice, from where 100 and 1000 rounds of SHAKE along the
- * bonds as they are take it. Molecules with rigid bodies are projected along what they are.
+ * force field's lengths. Bonds may be several times too long or too short. (hol_project_positions with r_ref = r does
+ * it where bonds are off by a third or less; above a tenth it needs HOL_NEVER, hol_chains_set_checks.) Each step of
+ * Newton's method moves atoms by w G along the present bonds, and only so far that no bond changes by more than a
+ * third. Near the end steps are whole, and the result is right to the rounding of the coordinates. A molecule that does
+ * not get there begins again twice, after 100 and after 1000 rounds of SHAKE along the present bonds. Molecules with
+ * rigid bodies are projected along their present positions.
  *
  * It is no projection: r ends on the constraints near where it was, not at the point that is nearest. Not for time
  * steps. hol_chains_set_checks does not matter. hol_project_velocities may follow.
@@ -1328,9 +1341,10 @@ HOL_API int hol_impose_view(const hol_chains *chains, const hol_view *r, hol_rep
  *
  * Z is the matrix that hol_forces solves; Z~ is Z scaled to ones on its diagonal, a function of the masses and of the
  * angles between neighbouring bonds only. A rigid molecule visits its conformations with the weight det Z~^(+1/2)
- * relative to one with stiff springs (the freely jointed chain); with the potential energy
+ * relative to a molecule with stiff springs (the freely jointed chain). The potential energy
  *     U_F = +(kT/2) sum over molecules of ln det Z~
- * added to the others it visits them as that does. docs/theory.md (24)-(32); Mazars 2007, Eq. (19).
+ * added to the others makes it visit them as the molecule with springs does. docs/theory.md (24)-(32);
+ * Mazars 2007, Eq. (19).
  *
  * @param[in]     chains
  * @param[in]     r          positions [n_atoms][3]
@@ -1349,7 +1363,7 @@ HOL_API int hol_impose_view(const hol_chains *chains, const hol_view *r, hol_rep
  * are found in twice the precision, a hundred times as slowly: about a microsecond a bond, and more where many bonds
  * meet at an atom (20 with ten) or a network fills its factor.
  * @return HOL_OK; HOL_ERR_NULL (chains or r); HOL_ERR_VALUE (kT, mode); HOL_ERR_UNSUPPORTED (molecules with rigid
- * bodies); HOL_ERR_NOT_FINITE; HOL_ERR_DEGENERATE; HOL_ERR_MEMORY. Thread-safe on one handle. Since 0.1.
+ *         bodies); HOL_ERR_NOT_FINITE; HOL_ERR_DEGENERATE; HOL_ERR_MEMORY. Thread-safe on one handle. Since 0.1.
  */
 HOL_API int hol_metric(const hol_chains *chains, const double *r, double kT, double *log_det, double *log_det_z,
                        double *energy, double *force, hol_mode mode);
@@ -1360,21 +1374,22 @@ HOL_API int hol_metric_view(const hol_chains *chains, const hol_const_view *r, d
 
 /* ------------------------------------------------------------------------------------------------- inverse of Z */
 
-/** The inverse of the matrix Z of one molecule in one conformation, prepared so that an element costs what it must. */
+/** The inverse of the matrix Z of one molecule in one conformation, prepared so that single elements are cheap. */
 typedef struct hol_inverse hol_inverse;
 
 /** Which inverse: of Z~ (ones on its diagonal, no units) or of Z, in 1/(length^2/mass). lambda = Z^-1 (K + C). */
 typedef enum hol_scaling HOL_IS_INT { HOL_UNIT_DIAGONAL = 0, HOL_PHYSICAL = 1 } hol_scaling;
 
 /**
- * Prepares the inverse for one molecule of N bonds: for a linear chain, a tree or a ring in time and memory
- * proportional to N, for others in what the elimination of their cycles costs. docs/theory.md (33)-(37); Mazars 2007,
- * Eqs. (20) and (28). Everything is copied: the set of molecules and r may be changed or freed afterwards.
+ * Prepares the inverse for one molecule of N bonds. Time and memory are proportional to N for a linear chain, a tree or
+ * a ring; for others they are those of the elimination of their cycles. docs/theory.md (33)-(37); Mazars 2007, Eqs.
+ * (20) and (28). Everything is copied: the set of molecules and r may be changed or freed afterwards.
  *
  * In a linear chain elements are products along it, and cost as the functions below say. In other molecules (since 0.2)
- * a row is a solution of the equations, in O(N) for trees and rings: so is an element, the diagonal and the matrix take
- * O(N^2). All are solved for in twice the precision: right to a few roundings, in trees however ill conditioned Z is,
- * beside cycles as long as no pivot of Z~ is below 1e-17. These functions may then return HOL_ERR_MEMORY.
+ * a row is a solution of the equations, and so is an element: O(N) in trees and rings. The diagonal and the matrix take
+ * O(N^2). All are solved for in twice the precision and are right to a few roundings: in trees however ill conditioned
+ * Z is, in molecules with cycles as long as no pivot of Z~ is below 1e-17. These functions may then return
+ * HOL_ERR_MEMORY.
  *
  * @param[in]  chains    an inactive molecule is allowed
  * @param[in]  molecule  its number, counted from the index base of `chains`, as bonds and atoms are in all the
@@ -1447,17 +1462,16 @@ HOL_API int hol_inverse_matrix(const hol_inverse *inverse, hol_scaling scaling, 
 HOL_API int hol_inverse_condition(const hol_inverse *inverse, double *condition);
 
 /**
- * How far given multipliers of the molecule are from the exact ones, as a guaranteed bound found afterwards: |Z^-1|
- * times the residual K + C - Z lambda, evaluated in twice the precision, with the rounding of the evaluation itself
- * added. O(N) for a linear chain, O(N^2) otherwise. It says how far to trust multipliers from any source, this library
- * or another solver.
+ * A guaranteed bound on how far given multipliers of the molecule are from the exact ones. It is |Z^-1| times the
+ * residual K + C - Z lambda, evaluated in twice the precision, plus the rounding of this evaluation. O(N) for a linear
+ * chain, O(N^2) otherwise. It says how far to trust multipliers from any source, this library or another solver.
  *
  * @param[in]  inverse  of the conformation to which the multipliers belong
  * @param[in]  v, f     velocities and applied forces as given to hol_forces, [n_atoms][3]; either may be NULL
  * @param[in]  lambda   [N], the molecule's part of the multipliers
  * @param[out] bound    [N] |lambda_k - exact lambda_k| <= bound_k, or NULL
- * @param[out] relative the largest bound_k over the largest |lambda_k|, or NULL; 0 if all bounds are 0, infinite if
- *                      only the multipliers are
+ * @param[out] relative the largest bound_k over the largest |lambda_k|, or NULL; 0 if all bounds are 0, infinite if all
+ *                      multipliers are 0 and a bound is not
  *
  * The equations are those without hol_chains_set_box_rate. "Exact" is for the given doubles of r, v, f and for the
  * inverse masses as rounded to doubles. The data's own errors come on top: at most their relative error times
