@@ -146,9 +146,14 @@ set(whole)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_GREATER_EQUAL 12)
     set(whole -mmove-max=256 -mstore-max=256)
 endif()
+# Of 32 registers of vectors gcc uses some to keep addresses in, and what is read there waits for these to come back.
+set(addresses_apart)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    set(addresses_apart -mtune-ctrl=^inter_unit_moves_from_vec,^inter_unit_moves_to_vec)
+endif()
 if(HOLONOMIC_X86_64)
     holonomic_kernels(avx512vl 4 EXTENDED double_double_fma NETWORKS avx2 NEEDS avx512f avx512dq avx512vl fma
-        FLAGS -mavx512f -mavx512dq -mavx512vl -mfma -mprefer-vector-width=256 TUNING ${whole})
+        FLAGS -mavx512f -mavx512dq -mavx512vl -mfma -mprefer-vector-width=256 TUNING ${whole} ${addresses_apart})
     holonomic_kernels(avx2 4 EXTENDED double_double_fma FLAGS ${avx2} TUNING ${whole} NEEDS avx2 fma)
     # Numbers of lanes that other processors have or may have, on any that has AVX2.
     foreach(lanes IN LISTS HOLONOMIC_TEST_LANES)
