@@ -189,9 +189,13 @@ struct LdlPositions {
     unsigned solve() {
         load();
         const MaskOf<V> in_use = Width<V>::first(used);
-        const Limits<V> limits(call, largest_coordinate, a_min);
+        Limits<V> limits(call, largest_coordinate, a_min);
+        limits.far = call.worst_trial;
         const Solved<V> out = iterate<V, false, true>(newton, limits, call, in_use);
-        const unsigned moved = bits(out.converged & ~coarse_moves()), good = moved | bits(out.untouched);
+        const MaskOf<V> far = out.converged & less(Width<V>::all(call.far_trial), newton.opening);
+        MaskOf<V> converged = out.converged & ~coarse_moves();
+        if (any(far)) converged = converged & (~far | newton.is_certified());
+        const unsigned moved = bits(converged), good = moved | bits(out.untouched);
         const Tile *tile = newton.s.tile;
         if (call.report)
             note_worst_bond(
