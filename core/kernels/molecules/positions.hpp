@@ -97,16 +97,18 @@ struct PositionsBlock {
     // a^2 of all bonds, unless they are those of the block before.
     void set_lengths(bool known) {
         if (!known) {
-            newton.lengths[0] = Width<V>::all(1e300);
-            newton.lengths[1] = V{};
+            V least = Width<V>::all(1e300), most = {};
             for (int32_t k = 0; k < s.n_bonds; ++k) {
                 V a = {};
                 for (int i = 0; i < Width<V>::lanes; ++i) Width<V>::set(a, i, lane[i].length[s.bond_of[k]]);
-                newton.lengths[0] = min(a, newton.lengths[0]);
-                newton.lengths[1] = max(a, newton.lengths[1]);
-                newton.x.row[k].a2 = a * a;
-                newton.x.row[k].per_a2 = Width<V>::all(1) / newton.x.row[k].a2;
+                least = min(a, least);
+                most = max(a, most);
+                const V a2 = a * a;
+                newton.x.row[k].a2 = a2;
+                newton.x.row[k].per_a2 = Width<V>::all(1) / a2;
             }
+            newton.lengths[0] = least;
+            newton.lengths[1] = most;
         }
         a_min = newton.lengths[0];
         a_max = newton.lengths[1];
