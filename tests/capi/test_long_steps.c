@@ -389,7 +389,8 @@ static int is_the_one_root(const int64_t *pairs, const double *ref, const double
     return 1;
 }
 
-/* Steps of a sixth to a half of a bond's square. What is found is the one root; the multipliers make it, and lengths are right. */
+/* Steps of a sixth to a half of a bond's square. What is found is the one root; the multipliers make it, and lengths
+ * are right. */
 static void a_long_step_of_a_large_graph_comes_to_its_one_root(void **state)
 {
     (void)state;

@@ -43,9 +43,7 @@ void widen(const Four &from, double *to) {
     to[2] = third_of(from);
 }
 // Of three numbers: velocities may end with them.
-void add(real *to, const DoublePair &xy, double z) {
-    write(to, low_of(pair_at(to)) + xy, to[2] + z);
-}
+void add(real *to, const DoublePair &xy, double z) { write(to, low_of(pair_at(to)) + xy, to[2] + z); }
 bool any(const Flags &flags) { return (flags[0] | flags[1] | flags[2]) != 0; }
 bool all(const Flags &flags) { return (flags[0] & flags[1] & flags[2]) != 0; }
 

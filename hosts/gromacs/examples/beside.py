@@ -88,7 +88,7 @@ def compare(name, options):
     for solver, orders in SOLVERS.items():
         s.write_mdp(folder, **{**mdp, **orders})
         said = g.grompp(folder, options.gmx, "-o", f"{tags[solver]}.tpr")
-    freedoms = float(re.search(r"Number of degrees of freedom in T-Coupling group rest is ([\d.]+)", said).group(1))
+    freedoms = float(re.search(r"Number of degrees of freedom in T-Coupling group \w+ is ([\d.]+)", said).group(1))
     seconds, drift = {solver: [] for solver in SOLVERS}, {}
     for _ in range(options.repeat):  # in turns, so that the load of the machine meets all alike
         for solver, tag in tags.items():

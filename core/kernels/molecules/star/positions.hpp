@@ -86,11 +86,13 @@ struct StarPositions {
         if (!moved) return good;
         if (call.virial) add_virial(b, tau, moved);
         const bool mixed = moved != all_of<V> && good == all_of<V>;
-        if (__builtin_expect(mixed, 0)) {  // what is right already moves by -0, which leaves every bit: all are written alike
+        // What is right already moves by -0, which leaves every bit: no lane is masked.
+        if (__builtin_expect(mixed, 0)) {
             HOL_UNROLL
             for (int k = 0; k <= N; ++k) {
                 const Vector3<V> all = shift[k];
-                put(shift[k], Vector3<V>{keep_or_stay(all.x, moved), keep_or_stay(all.y, moved), keep_or_stay(all.z, moved)});
+                put(shift[k],
+                    Vector3<V>{keep_or_stay(all.x, moved), keep_or_stay(all.y, moved), keep_or_stay(all.z, moved)});
             }
         }
         atoms.move(call, shift, mixed ? all_of<V> : moved);
