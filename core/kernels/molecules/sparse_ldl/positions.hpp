@@ -154,15 +154,15 @@ struct LdlPositions {
         return less(0.25 * (largest_coordinate + a_min), pull * a_max);
     }
 
-    void write_atoms(unsigned which) const {
-        for_atoms(newton.s, newton.team, [&](int32_t first, int32_t end) { write_atoms(which, first, end); });
+    void write_atoms(unsigned which, unsigned right) const {
+        for_atoms(newton.s, newton.team, [&](int32_t first, int32_t end) { write_atoms(which, right, first, end); });
     }
-    __attribute__((noinline)) void write_atoms(unsigned which, int32_t first, int32_t end) const {
+    __attribute__((noinline)) void write_atoms(unsigned which, unsigned right, int32_t first, int32_t end) const {
         bool any_fixed = false;
         for (int32_t i = first; i < end; ++i) any_fixed = any_fixed || elimination.fixed[i];
         const unsigned char *const fixed = any_fixed ? elimination.fixed + first : nullptr;
         move_vectors(call, at.from(first), newton.s.place_of + first, end - first, newton.moves.slots(),
-                     Written<V>{which, fixed, nullptr});
+                     Written<V>{which, fixed, nullptr, false, 0, right});
     }
 
     void write_multipliers(unsigned which) const {
@@ -209,7 +209,7 @@ struct LdlPositions {
         if (moved) {
             newton.displace();
             if (call.virial) add_virial(moved);
-            write_atoms(moved);
+            write_atoms(moved, good & ~moved);
             count_moved(tally, __builtin_popcount(moved), out.solves);
         }
         return bits(in_use) & ~good;
