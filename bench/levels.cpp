@@ -138,7 +138,8 @@ void position_section(const Run &run) {
         const Problem p = make_problem(recipe);
         Methods list = library(run, Level::position, p);
         if (all)
-            for (double tolerance : {1e-4, 1e-6, 1e-8, 1e-10, 1e-12}) list.push_back(holonomic_tolerance(p, tolerance));
+            for (double tolerance : {1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12})
+                list.push_back(holonomic_tolerance(p, tolerance));
         append(list, position_peers(run, p, all));
         run.measure(Level::position, p, list);
     };

@@ -28,8 +28,11 @@ Methods library(const Run &run, Level level, const Molecules &m, bool all) {
     if (run.threads > 1) list.push_back(holonomic(level, m, run.threads));
     list.push_back(holonomic_any_order(level, m));
     if (m.source.empty()) list.push_back(holonomic_chains_instead(level, m));
-    if (level == Level::position && all)
-        for (double tolerance : {1e-4, 1e-8, 1e-12}) list.push_back(holonomic_tolerance(m, tolerance));
+    if (level == Level::position && all) {
+        std::vector<double> sweep = {1e-4, 1e-8, 1e-12};
+        if (run.full()) sweep = {1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12};
+        for (double tolerance : sweep) list.push_back(holonomic_tolerance(m, tolerance));
+    }
     return list;
 }
 

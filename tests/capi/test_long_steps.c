@@ -363,6 +363,89 @@ static void a_long_step_is_alone_what_it_is_among_others(void **state)
     }
 }
 
+enum { RUNGS = 100, LADDER = 2 * RUNGS, LADDER_BONDS = 3 * RUNGS - 2 };
+
+/** Whether the symmetric part of the Jacobian w_kl D_k.b_l is positive definite: at most one root has that. */
+static int is_the_one_root(const int64_t *pairs, const double *ref, const double *r)
+{
+    static double S[LADDER_BONDS][LADDER_BONDS];
+    double b[LADDER_BONDS][3], D[LADDER_BONDS][3];
+    for (int k = 0; k < LADDER_BONDS; ++k)
+        for (int c = 0; c < 3; ++c) {
+            b[k][c] = ref[3 * pairs[2 * k + 1] + c] - ref[3 * pairs[2 * k] + c];
+            D[k][c] = r[3 * pairs[2 * k + 1] + c] - r[3 * pairs[2 * k] + c];
+        }
+    for (int k = 0; k < LADDER_BONDS; ++k)
+        for (int l = 0; l <= k; ++l) {
+            double w = 0;
+            for (int i = 0; i < 2; ++i)
+                for (int j = 0; j < 2; ++j)
+                    if (pairs[2 * k + i] == pairs[2 * l + j]) w += i == j ? 1 : -1;
+            S[k][l] = w * (dot(D[k], b[l]) + dot(D[l], b[k])) / 2;
+            for (int i = 0; i < l; ++i) S[k][l] -= S[k][i] * S[l][i];
+            if (k == l && !(S[k][k] > 1e-10)) return 0;
+            S[k][l] = k == l ? sqrt(S[k][k]) : S[k][l] / S[l][l];
+        }
+    return 1;
+}
+
+/* Steps of a sixth to a half of a bond's square. What is found is the one root; the multipliers make it, and lengths
+ * are right. */
+static void a_long_step_of_a_large_graph_comes_to_its_one_root(void **state)
+{
+    (void)state;
+    static int64_t pairs[2 * LADDER_BONDS];
+    static double masses[LADDER], ref[3 * LADDER], r[3 * LADDER], start[3 * LADDER], a[LADDER_BONDS], tau[LADDER_BONDS];
+    random_stream stream = random_seed(77);
+    int64_t *pair = pairs;
+    for (int i = 0; i < RUNGS; ++i) {
+        *pair++ = 2 * i, *pair++ = 2 * i + 1;
+        for (int j = 0; j < 2 && i > 0; ++j) *pair++ = 2 * i - 2 + j, *pair++ = 2 * i + j;
+    }
+    int far = 0, found = 0;
+    for (int trial = 0; trial < (quick_run() ? 2 : 20); ++trial) {
+        for (int i = 0; i < LADDER; ++i) {
+            masses[i] = 1;
+            const double at[3] = {i / 2, i % 2, 0.4 * (i / 2 % 2)};
+            for (int c = 0; c < 3; ++c) {
+                ref[3 * i + c] = at[c] + 0.05 * random_normal(&stream);
+                start[3 * i + c] = r[3 * i + c] = ref[3 * i + c] + 0.035 * random_normal(&stream);
+            }
+        }
+        double error = 0;
+        for (int k = 0; k < LADDER_BONDS; ++k) {
+            const double *from = ref + 3 * pairs[2 * k], *to = ref + 3 * pairs[2 * k + 1];
+            a[k] = sqrt((to[0] - from[0]) * (to[0] - from[0]) + (to[1] - from[1]) * (to[1] - from[1]) +
+                        (to[2] - from[2]) * (to[2] - from[2]));
+            from = r + 3 * pairs[2 * k], to = r + 3 * pairs[2 * k + 1];
+            const double d[3] = {to[0] - from[0], to[1] - from[1], to[2] - from[2]};
+            error = fmax(error, fabs(dot(d, d) / (a[k] * a[k]) - 1));
+        }
+        far += error > 0.15 && error < 0.5;
+        hol_chains *chains;
+        CHECK(hol_chains_create(LADDER, masses, &chains));
+        CHECK(hol_chains_add_bonds(chains, LADDER_BONDS, pairs, a));
+        if (hol_project_positions(chains, ref, r, NULL, sqrt(0.5), tau, 0, NULL, NULL) == HOL_OK) {
+            ++found;
+            assert_true(is_the_one_root(pairs, ref, r));
+            for (int k = 0; k < LADDER_BONDS; ++k) {
+                const double *from = r + 3 * pairs[2 * k], *to = r + 3 * pairs[2 * k + 1];
+                const double d[3] = {to[0] - from[0], to[1] - from[1], to[2] - from[2]};
+                CHECK_AT_MOST(fabs(dot(d, d) / (a[k] * a[k]) - 1), 1e-12);
+                for (int c = 0; c < 3; ++c) {
+                    const double pull = tau[k] * (ref[3 * pairs[2 * k + 1] + c] - ref[3 * pairs[2 * k] + c]);
+                    start[3 * pairs[2 * k] + c] += pull;
+                    start[3 * pairs[2 * k + 1] + c] -= pull;
+                }
+            }
+            for (int e = 0; e < 3 * LADDER; ++e) CHECK_AT_MOST(fabs(start[e] - r[e]), 1e-11);
+        }
+        hol_chains_destroy(chains);
+    }
+    print_message("%d long steps, %d found\n", far, found);
+    assert_true(quick_run() || (far > 10 && found > 10));
+}
+
 /* Rods joined tip to tip; a body alone; a body with a bond. What can't be made in one step is no degenerate molecule.
  */
 static void too_long_a_step_of_bodies_does_not_converge(void **state)
@@ -439,6 +522,7 @@ int main(void)
         cmocka_unit_test(long_steps_come_to_the_root_of_the_reference),
         cmocka_unit_test(methane_by_nine_distances_is_where_shake_comes_to),
         cmocka_unit_test(a_long_step_is_alone_what_it_is_among_others),
+        cmocka_unit_test(a_long_step_of_a_large_graph_comes_to_its_one_root),
         cmocka_unit_test(too_long_a_step_of_bodies_does_not_converge),
         cmocka_unit_test(a_collapsed_body_is_degenerate),
     };

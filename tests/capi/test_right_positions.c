@@ -107,8 +107,72 @@ static void right_ones_stay_and_others_are_solved_as_without_them(void **state)
             }
 }
 
+/** Molecules that are no chains, in the plane z = -0. */
+typedef struct shape {
+    int n_atoms, n_bonds;
+    int64_t pairs[20];
+    double x[10][2];
+} shape;
+
+static const shape shapes[] = {
+    {4, 3, {0, 1, 0, 2, 0, 3}, {{0, 0}, {1, 0}, {-0.5, 0.8}, {-0.4, -0.9}}},
+    {5, 4, {0, 1, 0, 2, 0, 3, 0, 4}, {{0, 0}, {1, 0}, {0, 1}, {-1, 0}, {0.3, -1}}},
+    {7, 6, {0, 1, 0, 2, 2, 3, 2, 4, 4, 5, 4, 6}, {{0, 0}, {0, 1}, {1, 0}, {1, 1}, {2, 0.3}, {2, 1}, {3, 0}}},
+    {6, 6, {0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 0, 5}, {{1, 0}, {0.5, 0.9}, {-0.5, 0.9}, {-1, 0}, {-0.5, -0.9}, {0.5, -0.9}}},
+    {5, 6, {0, 1, 1, 2, 2, 3, 0, 3, 0, 2, 3, 4}, {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {-0.7, 1.5}}},
+};
+enum { copies = 13 };
+
+/* By default and where a tolerance lets them be; a third are right, or every other one. */
+static void right_molecules_of_other_shapes_stay(void **state)
+{
+    (void)state;
+    for (size_t which = 0; which < 4 * sizeof shapes / sizeof *shapes; ++which) {
+        const shape *const m = shapes + which / 4;
+        const int period = which % 2 ? 2 : 3, n = copies * m->n_atoms;
+        random_stream stream = random_seed(5 + which);
+        double mass[10 * copies], length[20], ref[30 * copies], r[30 * copies], all[30 * copies], v[30 * copies],
+            v_all[30 * copies], came[30 * copies], v_came[30 * copies];
+        for (int k = 0; k < m->n_bonds; ++k) {
+            const double *const a = m->x[m->pairs[2 * k]], *const b = m->x[m->pairs[2 * k + 1]];
+            length[k] = hypot(b[0] - a[0], b[1] - a[1]);
+        }
+        for (int i = 0; i < n; ++i) {
+            mass[i] = i % m->n_atoms == 0 ? 12 : 1;
+            const int right = i / m->n_atoms % period == 0;
+            for (int c = 0; c < 3; ++c) {
+                ref[3 * i + c] = c == 2 ? -0.0 : m->x[i % m->n_atoms][c] + i / m->n_atoms;
+                const double moved = ref[3 * i + c] + 0.01 * uniform(&stream);
+                came[3 * i + c] = r[3 * i + c] = right ? ref[3 * i + c] : moved;
+                all[3 * i + c] = moved;
+                v_came[3 * i + c] = v[3 * i + c] = v_all[3 * i + c] = c == 2 ? -0.0 : uniform(&stream);
+            }
+        }
+        hol_chains *chains;
+        CHECK(hol_chains_create(n, mass, &chains));
+        CHECK(hol_chains_add_molecules(chains, copies, m->n_atoms, 0, m->n_bonds, m->pairs, length));
+        CHECK(hol_chains_set_tolerance(chains, which % 4 < 2 ? 0 : 1e-4));
+        CHECK(hol_project_positions(chains, ref, r, v, 0.1, NULL, 0, NULL, NULL));
+        CHECK(hol_project_positions(chains, ref, all, v_all, 0.1, NULL, 0, NULL, NULL));
+        for (int c = 0; c < copies; ++c) {
+            const int first = 3 * c * m->n_atoms;
+            const size_t values = 3 * (size_t)m->n_atoms;
+            const int right = c % period == 0;
+            assert_same_bits(r + first, (right ? came : all) + first, values);
+            assert_same_bits(v + first, (right ? v_came : v_all) + first, values);
+            for (int k = 0; k < m->n_bonds; ++k) {
+                const double *const a = r + first + 3 * m->pairs[2 * k], *const b = r + first + 3 * m->pairs[2 * k + 1];
+                const double d = hypot(hypot(b[0] - a[0], b[1] - a[1]), b[2] - a[2]);
+                CHECK_AT_MOST(fabs(d / length[k] - 1), 1e-4);
+            }
+        }
+        hol_chains_destroy(chains);
+    }
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(right_ones_stay_and_others_are_solved_as_without_them)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(right_ones_stay_and_others_are_solved_as_without_them),
+                                       cmocka_unit_test(right_molecules_of_other_shapes_stay)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

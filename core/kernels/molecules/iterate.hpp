@@ -11,7 +11,7 @@ namespace holonomic::HOL_ISA::graph {
 template <class V>
 struct Limits {
     V accepted, always_accepted;
-    double wanted;
+    double wanted, far;  // far: from larger errors nothing is tried
     Limits(const PositionsCall &call, V largest_coordinate, V a_min) : Limits(call, largest_coordinate / a_min) {}
     // The largest coordinate in units of the shortest bond.
     Limits(const PositionsCall &call, V coordinate) {
@@ -19,6 +19,7 @@ struct Limits {
         accepted = max(Width<V>::all(call.tolerance), rounding * (Width<V>::all(1) + coordinate));
         always_accepted = Width<V>::all(call.tolerance > rounding ? call.tolerance : rounding);
         wanted = wanted_error(call);
+        far = call.far_trial;
     }
     // What is enough where the last solve must have gone far below a rounding: the floor, as in iterate().
     V enough() const {
@@ -93,7 +94,7 @@ HOL_INLINE Solved<V> iterate(System &newton, const Limits<V> &limits, const Posi
     const V done = Width<V>::all(limits.wanted);
     V error = newton.open();
     Solved<V> out = {wanted & less_equal(error, limits.accepted), none, error, 0};
-    Mask active = wanted & ~out.untouched & finite(error) & less_equal(error, Width<V>::all(call.far_trial));
+    Mask active = wanted & ~out.untouched & finite(error) & less_equal(error, Width<V>::all(limits.far));
     if (call.guess) {
         newton.forget(~active);
         const V with_guess = newton.move();

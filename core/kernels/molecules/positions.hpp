@@ -72,14 +72,16 @@ HOL_NOINLINE V load_bonds(RingNewton<V> &newton, const PositionsCall &call, cons
     return largest;
 }
 
-// Moves the atoms of the lanes in `which`, and their velocities, but fixed ones.
+// Moves the atoms of the lanes in `which`, and their velocities, but fixed ones. `right`: lanes that stay.
 template <class System, class V>
-HOL_INLINE void write_moves(const System &newton, const PositionsCall &call, const Atoms<V> &at, unsigned which) {
+HOL_INLINE void write_moves(const System &newton, const PositionsCall &call, const Atoms<V> &at, unsigned which,
+                            unsigned right) {
     const EliminationPlan &s = newton.x.s;
     unsigned char any_fixed = 0;
     for (int32_t i = 0; i < s.n_atoms; ++i) any_fixed |= s.fixed[i];
     const unsigned char *const fixed = any_fixed ? s.fixed : nullptr;
-    move_vectors(call, at, s.slot_of, s.n_atoms, newton.displacements(), Written<V>{which, fixed, nullptr});
+    move_vectors(call, at, s.slot_of, s.n_atoms, newton.displacements(),
+                 Written<V>{which, fixed, nullptr, false, 0, right});
 }
 
 // A block of molecules at the position level. System: Newton or RingNewton.
@@ -97,16 +99,18 @@ struct PositionsBlock {
     // a^2 of all bonds, unless they are those of the block before.
     void set_lengths(bool known) {
         if (!known) {
-            newton.lengths[0] = Width<V>::all(1e300);
-            newton.lengths[1] = V{};
+            V least = Width<V>::all(1e300), most = {};
             for (int32_t k = 0; k < s.n_bonds; ++k) {
                 V a = {};
                 for (int i = 0; i < Width<V>::lanes; ++i) Width<V>::set(a, i, lane[i].length[s.bond_of[k]]);
-                newton.lengths[0] = min(a, newton.lengths[0]);
-                newton.lengths[1] = max(a, newton.lengths[1]);
-                newton.x.row[k].a2 = a * a;
-                newton.x.row[k].per_a2 = Width<V>::all(1) / newton.x.row[k].a2;
+                least = min(a, least);
+                most = max(a, most);
+                const V a2 = a * a;
+                newton.x.row[k].a2 = a2;
+                newton.x.row[k].per_a2 = Width<V>::all(1) / a2;
             }
+            newton.lengths[0] = least;
+            newton.lengths[1] = most;
         }
         a_min = newton.lengths[0];
         a_max = newton.lengths[1];
@@ -169,7 +173,7 @@ struct PositionsBlock {
         if (call.report) note_worst(good, out.error);
         if (call.lambda) write_multipliers(good);
         if (call.virial) add_virial(moved);
-        if (moved) write_moves(newton, call, at, moved);
+        if (moved) write_moves(newton, call, at, moved, good & ~moved);
         if (moved) count_moved(tally, __builtin_popcount(moved), out.solves);
         return bits(in_use) & ~good;
     }

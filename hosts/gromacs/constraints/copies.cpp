@@ -1,6 +1,9 @@
 #include "copies.hpp"
 
 #include <limits>
+#ifdef __SSE2__
+#include <immintrin.h>
+#endif
 
 namespace holonomic {
 
@@ -14,14 +17,33 @@ namespace {
 typedef real Four __attribute__((vector_size(4 * sizeof(real))));
 typedef decltype(Four{} < Four{}) Flags;
 typedef Four UnalignedFour __attribute__((aligned(sizeof(real)), may_alias));
-typedef real Pair __attribute__((vector_size(2 * sizeof(real)), aligned(sizeof(real)), may_alias));
 typedef double DoublePair __attribute__((vector_size(2 * sizeof(double)), aligned(sizeof(double)), may_alias));
 
 Four read(const real *p) { return *reinterpret_cast<const UnalignedFour *>(p); }
-void widen(const real *from, double *to) {
-    *reinterpret_cast<DoublePair *>(to) = __builtin_convertvector(*reinterpret_cast<const Pair *>(from), DoublePair);
-    to[2] = from[2];
+#if defined(__SSE2__) && !GMX_DOUBLE
+// What gcc makes of the other form converts one by one.
+Four pair_at(const real *p) { return _mm_loadl_pi(Four{}, reinterpret_cast<const __m64 *>(p)); }
+DoublePair low_of(Four a) { return _mm_cvtps_pd(a); }
+double third_of(Four a) { return _mm_cvtsd_f64(_mm_cvtps_pd(_mm_movehl_ps(a, a))); }
+void write(real *to, const DoublePair &xy, double z) {
+    _mm_storel_pi(reinterpret_cast<__m64 *>(to), _mm_cvtpd_ps(xy));
+    to[2] = static_cast<real>(z);
 }
+#else
+Four pair_at(const real *p) { return Four{p[0], p[1], 0, 0}; }
+DoublePair low_of(const Four &a) { return DoublePair{a[0], a[1]}; }
+double third_of(const Four &a) { return a[2]; }
+void write(real *to, const DoublePair &xy, double z) {
+    for (int a = 0; a < 2; a++) to[a] = static_cast<real>(xy[a]);
+    to[2] = static_cast<real>(z);
+}
+#endif
+void widen(const Four &from, double *to) {
+    *reinterpret_cast<DoublePair *>(to) = low_of(from);
+    to[2] = third_of(from);
+}
+// Of three numbers: velocities may end with them.
+void add(real *to, const DoublePair &xy, double z) { write(to, low_of(pair_at(to)) + xy, to[2] + z); }
 bool any(const Flags &flags) { return (flags[0] | flags[1] | flags[2]) != 0; }
 bool all(const Flags &flags) { return (flags[0] & flags[1] & flags[2]) != 0; }
 
@@ -64,11 +86,16 @@ template <typename Each>
 bool for_all(int64_t n, int n_threads, const Each &each) {
     bool all_true = true;
     if (n_threads == 1) {
-        for (int64_t k = 0; k < n; k++) all_true &= each(k);
+        const Each own = each;  // nothing that is written can be a part of it
+        for (int64_t k = 0; k < n; k++) all_true &= own(k);
         return all_true;
     }
-#pragma omp parallel for num_threads(n_threads) schedule(static) reduction(& : all_true)
-    for (int64_t k = 0; k < n; k++) all_true &= each(k);
+#pragma omp parallel num_threads(n_threads) reduction(& : all_true)
+    {
+        const Each own = each;
+#pragma omp for schedule(static)
+        for (int64_t k = 0; k < n; k++) all_true &= own(k);
+    }
     return all_true;
 }
 
@@ -103,7 +130,7 @@ void copy_whole(const Arrangement &arrangement, const t_pbc *pbc, const real *fr
         for (int k = start; k < end; k++) {
             const real *const here = from + 3 * static_cast<ptrdiff_t>(atoms[k]);
             is_cut |= box.is_other_image(read(here) - read(from + 3 * static_cast<ptrdiff_t>(atoms[parents[k]])));
-            widen(here, to + 3 * static_cast<ptrdiff_t>(k));
+            widen(read(here), to + 3 * static_cast<ptrdiff_t>(k));
         }
         if (any(is_cut)) make_whole(arrangement, box, from, to, start, end);
         return true;
@@ -116,21 +143,21 @@ bool copy_both_whole(const Arrangement &arrangement, const t_pbc *pbc, const rea
     const int *const atoms = arrangement.atoms.data(), *const parents = arrangement.parents.data();
     const auto square = static_cast<real>(near * near);
     const Four near_squared = {square, square, square, Box::far};
-    return for_molecules(arrangement, n_threads, [=, &arrangement](int start, int end) {
+    return for_molecules(arrangement, n_threads, [=, places = &arrangement](int start, int end) {
         Flags is_cut = {}, is_near = ~is_cut;
         for (int k = start; k < end; k++) {
             const ptrdiff_t i = 3 * static_cast<ptrdiff_t>(atoms[k]);
-            const Four before = read(x + i), moved = read(q + i) - before;
+            const Four before = read(x + i), after = read(q + i), moved = after - before;
             is_cut |= box.is_other_image(before - read(x + 3 * static_cast<ptrdiff_t>(atoms[parents[k]])));
             is_near &= moved * moved <= near_squared;
-            widen(x + i, to_x + 3 * static_cast<ptrdiff_t>(k));
-            widen(q + i, to_q + 3 * static_cast<ptrdiff_t>(k));
+            widen(before, to_x + 3 * static_cast<ptrdiff_t>(k));
+            widen(after, to_q + 3 * static_cast<ptrdiff_t>(k));
         }
         const bool all_near = all(is_near);
         if (!all_near || any(is_cut)) {
-            make_whole(arrangement, box, x, to_x, start, end);
+            make_whole(*places, box, x, to_x, start, end);
             if (!all_near) {
-                make_whole(arrangement, box, q, to_q, start, end);
+                make_whole(*places, box, q, to_q, start, end);
             } else {
                 for (int k = start; k < end; k++)  // as from the atom's image in x
                     for (int a = 0; a < 3; a++) {
@@ -156,18 +183,12 @@ bool move(const Arrangement &arrangement, const double *d, double inverse_dt, re
           int n_threads) {
     const int *const atoms = arrangement.atoms.data();
     return for_all(static_cast<int64_t>(arrangement.atoms.size()), n_threads, [=](int64_t k) {
-        const double x = d[3 * k], y = d[3 * k + 1], z = d[3 * k + 2];
-        real *const here = q + 3 * static_cast<ptrdiff_t>(atoms[k]);
-        here[0] = static_cast<real>(here[0] + x);
-        here[1] = static_cast<real>(here[1] + y);
-        here[2] = static_cast<real>(here[2] + z);
-        if (v != nullptr) {
-            real *const velocity = v + 3 * static_cast<ptrdiff_t>(atoms[k]);
-            velocity[0] = static_cast<real>(velocity[0] + inverse_dt * x);
-            velocity[1] = static_cast<real>(velocity[1] + inverse_dt * y);
-            velocity[2] = static_cast<real>(velocity[2] + inverse_dt * z);
-        }
-        return x * x + y * y + z * z <= near * near;
+        const DoublePair xy = *reinterpret_cast<const DoublePair *>(d + 3 * k);
+        const double z = d[3 * k + 2];
+        const ptrdiff_t i = 3 * static_cast<ptrdiff_t>(atoms[k]);
+        add(q + i, xy, z);
+        if (v != nullptr) add(v + i, inverse_dt * xy, inverse_dt * z);
+        return xy[0] * xy[0] + xy[1] * xy[1] + z * z <= near * near;
     });
 }
 

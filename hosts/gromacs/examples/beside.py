@@ -30,19 +30,28 @@ def molecules(*listed, spacing, **mdp):
     return prepare
 
 
-def protein(residues, **mdp):
+def minimised(make, count, spacing, **mdp):
+    def prepare(folder, gmx):
+        s.write(folder, [(make(), count)], spacing, **QUIET, integrator="steep", nsteps=500, emtol=100, gen_vel="no")
+        g.grompp(folder, gmx, "-o", "topol.tpr")
+        g.mdrun(folder, gmx=gmx, holonomic=False, name="conf")
+        return {**QUIET, **mdp}
+    return prepare
+
+
+def protein(sequence, **mdp):
     """One helix, minimised without constraints."""
     def prepare(folder, gmx):
         folder.mkdir(parents=True, exist_ok=True)
-        helix.write(folder / "helix.pdb", residues)
+        helix.write(folder / "helix.pdb", sequence)
         g.call([gmx, "-quiet", "pdb2gmx", "-f", "helix.pdb", "-ff", "oplsaa", "-water", "none", "-ignh", "-o", "made.gro"],
                folder)
         g.call([gmx, "-quiet", "editconf", "-f", "made.gro", "-o", "conf.gro", "-princ", "-bt", "triclinic", "-d", "1.2"],
                folder, "System\n")
-        s.write_mdp(folder, **QUIET, integrator="steep", nsteps=200, emtol=100, gen_vel="no")
+        s.write_mdp(folder, **QUIET, integrator="steep", nsteps=2000, emtol=100, gen_vel="no")
         g.grompp(folder, gmx, "-o", "topol.tpr")
         g.mdrun(folder, gmx=gmx, holonomic=False, name="conf")
-        return {**QUIET, **mdp}
+        return {**QUIET, "tcoupl": "v-rescale", "tc_grps": "system", "tau_t": 0.1, "ref_t": 300, **mdp}
     return prepare
 
 
@@ -51,8 +60,11 @@ SCENES = {
     "cholesterol 30 fs": molecules((s.cholesterol, 400), spacing=1.2, interacting=False, dt=0.03, nsteps=1667),
     "dodecane h-bonds": molecules((lambda: s.alkane(12), 216), spacing=1.7, nsteps=400, constraints="h-bonds"),
     "dodecane all-bonds": molecules((lambda: s.alkane(12), 216), spacing=1.7, nsteps=400, constraints="all-bonds"),
-    "protein h-bonds": protein(196, constraints="h-bonds", nsteps=1000),
-    "protein all-bonds": protein(196, constraints="all-bonds", nsteps=1000),
+    "lipids h-bonds": minimised(s.lipid, 64, 5.0, constraints="h-bonds", nsteps=400),
+    "helix h-bonds": protein(196 * "A", constraints="h-bonds", nsteps=1000),
+    "helix all-bonds": protein(196 * "A", constraints="all-bonds", nsteps=1000),
+    "lysozyme h-bonds": protein(helix.LYSOZYME, constraints="h-bonds", nsteps=1000),
+    "lysozyme all-bonds": protein(helix.LYSOZYME, constraints="all-bonds", nsteps=1000),
     "coils of 50 bonds": molecules((lambda: s.chain(50), 64), spacing=8.0, interacting=False, dt=0.005, nsteps=1000),
 }
 
@@ -76,7 +88,7 @@ def compare(name, options):
     for solver, orders in SOLVERS.items():
         s.write_mdp(folder, **{**mdp, **orders})
         said = g.grompp(folder, options.gmx, "-o", f"{tags[solver]}.tpr")
-    freedoms = float(re.search(r"Number of degrees of freedom in T-Coupling group rest is ([\d.]+)", said).group(1))
+    freedoms = float(re.search(r"Number of degrees of freedom in T-Coupling group \w+ is ([\d.]+)", said).group(1))
     seconds, drift = {solver: [] for solver in SOLVERS}, {}
     for _ in range(options.repeat):  # in turns, so that the load of the machine meets all alike
         for solver, tag in tags.items():

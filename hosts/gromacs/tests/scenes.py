@@ -145,6 +145,52 @@ def alkane(n, name="ALK"):
     return Molecule(name, atoms, places, bonds=bonds, angles=angles)
 
 
+def lipid(tail=15):
+    """The groups of DPPC's hydrogens: two tails of CH2 from an ester on, a glycerol in the middle and a head that ends with
+    N(CH3)3, stretched out; harmonic bonds and angles. To be minimised."""
+    atoms, places, bonds, angles = [], [], [], []
+
+    def add(name, mass, place, *to):
+        atoms.append(("H" if name == "H" else "C", f"{name}{len(atoms) + 1}", mass))
+        places.append(place)
+        for other in to:
+            bonds.append((other, len(atoms), 0.109 if name == "H" else 0.15, 284512.0 if name == "H" else 224262.4))
+        return len(atoms)
+
+    def hydrogens(heavy, *directions):
+        for e in directions:
+            add("H", 1.008, tuple(c + 0.109 * d / math.hypot(*e) for c, d in zip(places[heavy - 1], e)), heavy)
+
+    last, middle = None, tail + 4  # tail, ester of two atoms without hydrogens, glycerol, and back
+    for k in range(2 * middle - 1):
+        up = 1 if k % 2 else -1
+        off = abs(k - middle + 1)
+        last = add("O" if off == 2 else "C", 15.999 if off == 2 else 12.011, (0.127 * k, 0, 0.042 * up), *([last] if last else []))
+        if off not in (0, 2, 3):
+            hydrogens(last, (0, 1, up), (0, -1, up), *([(-1 if k == 0 else 1, 0, -up)] if k in (0, 2 * middle - 2) else []))
+        if off == 0:
+            hydrogens(last, (0, -1, up))
+            centre, side = last, up
+    head = centre
+    for k, (name, mass) in enumerate((("O", 15.999), ("P", 30.974), ("O", 15.999), ("C", 12.011), ("C", 12.011), ("N", 14.007))):
+        x, y, z = places[centre - 1]
+        head = add(name, mass, (x + 0.042 * (1 if k % 2 else -1), y + 0.06 + 0.127 * k, z + 0.08 * side), head)
+        if name == "C":
+            up = 1 if k % 2 else -1
+            hydrogens(head, (up, 0, 1), (up, 0, -1))
+    x, y, z = places[head - 1]
+    for dx, dz in ((1, 0), (-0.5, 0.87), (-0.5, -0.87)):
+        carbon = add("C", 12.011, (x + 0.14 * dx, y + 0.05, z + 0.14 * dz), head)
+        hydrogens(carbon, (dx, 1, dz), (dx - dz, -0.3, dz + dx), (dx + dz, -0.3, dz - dx))
+    neighbours = {}
+    for i, j, *_ in bonds:
+        neighbours.setdefault(i, []).append(j)
+        neighbours.setdefault(j, []).append(i)
+    for j, around in neighbours.items():
+        angles += [(a, j, b, 109.5, 300.0) for n, a in enumerate(around) for b in around[:n]]
+    return Molecule("LIP", atoms, places, bonds=bonds, angles=angles)
+
+
 def chain(n_bonds, length=0.15, mass=14.0, bend=math.radians(60), name="CHN"):
     """A zigzag; `bend` near 0 is a nearly straight chain."""
     places = [(0.0, 0.0, 0.0)]

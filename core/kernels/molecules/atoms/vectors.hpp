@@ -102,6 +102,7 @@ struct Written {
     const MoleculeLane *lane;    // whose atoms may belong to others, too, and are left out then; or nullptr
     bool add = false;            // to what is there
     int32_t first = 0;           // of the lanes' atoms
+    unsigned right = 0;          // lanes that stay as they are
 
     unsigned lanes_of(int32_t atom) const {
         unsigned left = fixed && fixed[atom] ? 0 : which;
@@ -114,6 +115,7 @@ struct Written {
         for (int i = 0; lane && i < Width<V>::lanes; ++i) all = all && !lane[i].shared;
         return all;
     }
+    bool all_but_right() const { return right != 0 && (which | right) == all_of<V> && !fixed && !lane; }
 };
 
 // Writes the vectors of n atoms, from[slot].
@@ -163,6 +165,28 @@ HOL_NOINLINE void move_vectors(const PositionsCall &call, const Atoms<V> &at, co
                                const Moves moves, const Written<V> what) {
     const double per_dt = 1 / call.dt;
     const V factor = Width<V>::all(per_dt);
+    const auto move_rows = [&](int32_t first, const auto &move_of) HOL_FORCED {
+        for_rows(call.r, at, first, n, [&](int32_t k, double **p) HOL_FORCED {
+            const Vector3<V> a = move_of(k);
+            Vector3<V> before;
+            read_rows(p, before);
+            write_rows(p, before + a);
+        });
+        if (!call.v.x) return;
+        for_rows(call.v, at, first, n, [&](int32_t k, double **p) HOL_FORCED {
+            Vector3<V> before;
+            read_rows(p, before);
+            write_rows(p, add_times(before, factor, move_of(k)));
+        });
+    };
+    if (what.all_but_right() && at.layout != elements) {  // these move by -0, which leaves every bit: no lane is masked
+        const MaskOf<V> moved = Width<V>::of_bits(what.which);
+        const V still = Width<V>::all(-0.0);
+        return move_rows(0, [&](int32_t k) HOL_FORCED {
+            const Vector3<V> a = moves[slot_of[k]];
+            return Vector3<V>{select(moved, a.x, still), select(moved, a.y, still), select(moved, a.z, still)};
+        });
+    }
     if (!what.all() || at.layout == elements) {
         for (int32_t k = 0; k < n; ++k) {
             const unsigned which = what.lanes_of(k);
@@ -184,18 +208,7 @@ HOL_NOINLINE void move_vectors(const PositionsCall &call, const Atoms<V> &at, co
             rows_from(call.v, at, k, v);
             add_elements<3 * atoms_at_once>(r, v, per_dt, a);
         });
-    for_rows(call.r, at, first, n, [&](int32_t k, double **p) HOL_FORCED {
-        const Vector3<V> a = moves[slot_of[k]];
-        Vector3<V> before;
-        read_rows(p, before);
-        write_rows(p, before + a);
-    });
-    if (!call.v.x) return;
-    for_rows(call.v, at, first, n, [&](int32_t k, double **p) HOL_FORCED {
-        Vector3<V> before;
-        read_rows(p, before);
-        write_rows(p, add_times(before, factor, moves[slot_of[k]]));
-    });
+    move_rows(first, [&](int32_t k) HOL_FORCED { return moves[slot_of[k]]; });
 }
 
 }  // namespace holonomic::HOL_ISA::graph

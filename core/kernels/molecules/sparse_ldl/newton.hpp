@@ -48,9 +48,7 @@ struct LdlNewton : LdlDisplacements<V> {
         for (int32_t k = 0; for_some && k < s.n_bonds; ++k) left[k] = t[k];
         if (for_some) for_factors([&](V &value, int64_t i) HOL_FORCED { factors[i] = value; });
         make_factors([&](const Tile &tile, const Rows<V> &rows) HOL_FORCED {
-            const Rows<V> d = moved ? rows : D.from(tile.first_row);
-            for (int64_t row = tile.first_row; moved && row < tile.end_row; ++row)
-                d[row - tile.first_row] = this->moved_bond(tile, row);
+            const Rows<V> d = bonds_of(tile, rows);
             this->template measure_tile<true>(tile, d);
             for (int32_t k = tile.first; for_some && k < tile.end; ++k) left[k] = select(which, t[k], left[k]);
             assemble(tile, d, rows);
@@ -59,6 +57,38 @@ struct LdlNewton : LdlDisplacements<V> {
         for_factors([&](V &value, int64_t i) HOL_FORCED { value = select(which, value, factors[i]); });
         for (int32_t k = 0; k < s.n_bonds; ++k) t[k] = left[k];
         eliminated = false;
+    }
+    // A tile's bonds as they are, in the rows of this thread where they have been moved.
+    Rows<V> bonds_of(const Tile &tile, const Rows<V> &rows) const {
+        if (!moved) return D.from(tile.first_row);
+        for (int64_t row = tile.first_row; row < tile.end_row; ++row)
+            rows[row - tile.first_row] = this->moved_bond(tile, row);
+        return rows;
+    }
+    // The lanes in which the symmetric part of the matrix is positive definite for the bonds as they are: no other root
+    // has that (core/long_step/roots.hpp). The factors are lost.
+    __attribute__((noinline)) MaskOf<V> is_certified() {
+        constexpr double least_pivot = 1e-10;  // of a diagonal element
+        make_factors([&](const Tile &tile, const Rows<V> &rows) HOL_FORCED {
+            assemble(tile, bonds_of(tile, rows), rows);
+            for (int64_t e = tile.first_entry; e < tile.end_entry; e += step)
+                some(lower, e) = some(upper, e) = all_columns<V>(0.5) * (some(lower, e) + some(upper, e));
+        });
+        this->up([&](const Tile &tile, const Rows<V> &rows) {
+            const Rows<V> d = bonds_of(tile, rows), ref = b.from(tile.first_row);
+            const V *const of_site = w + tile.first_site;
+            const int32_t *const from = s.from + tile.first_row, *const to = s.to + tile.first_row;
+            V most = {};  // of a diagonal element over its pivot
+            for (int32_t k = 0; k < tile.end - tile.first; ++k) {
+                const V sum = at_four_times(of_site, from[k]) + at_four_times(of_site, to[k]),
+                        ratio = sum * dot(vector_of(d[k]), vector_of(ref[k])) * r_pivot[tile.first + k];
+                most = max(select(less(V{}, ratio), ratio, Width<V>::all(__builtin_inf())), most);
+            }
+            this->found[&tile - s.tile].pull = most;
+        });
+        V most = {};
+        for (int32_t i = 0; i < s.n_tiles; ++i) most = max(this->found[i].pull, most);
+        return less(most, Width<V>::all(1 / least_pivot));
     }
     // Calls body(value, its number) for all values that factors are made of.
     template <class Body>

@@ -154,15 +154,15 @@ struct LdlPositions {
         return less(0.25 * (largest_coordinate + a_min), pull * a_max);
     }
 
-    void write_atoms(unsigned which) const {
-        for_atoms(newton.s, newton.team, [&](int32_t first, int32_t end) { write_atoms(which, first, end); });
+    void write_atoms(unsigned which, unsigned right) const {
+        for_atoms(newton.s, newton.team, [&](int32_t first, int32_t end) { write_atoms(which, right, first, end); });
     }
-    __attribute__((noinline)) void write_atoms(unsigned which, int32_t first, int32_t end) const {
+    __attribute__((noinline)) void write_atoms(unsigned which, unsigned right, int32_t first, int32_t end) const {
         bool any_fixed = false;
         for (int32_t i = first; i < end; ++i) any_fixed = any_fixed || elimination.fixed[i];
         const unsigned char *const fixed = any_fixed ? elimination.fixed + first : nullptr;
         move_vectors(call, at.from(first), newton.s.place_of + first, end - first, newton.moves.slots(),
-                     Written<V>{which, fixed, nullptr});
+                     Written<V>{which, fixed, nullptr, false, 0, right});
     }
 
     void write_multipliers(unsigned which) const {
@@ -189,9 +189,13 @@ struct LdlPositions {
     unsigned solve() {
         load();
         const MaskOf<V> in_use = Width<V>::first(used);
-        const Limits<V> limits(call, largest_coordinate, a_min);
+        Limits<V> limits(call, largest_coordinate, a_min);
+        limits.far = call.worst_trial;
         const Solved<V> out = iterate<V, false, true>(newton, limits, call, in_use);
-        const unsigned moved = bits(out.converged & ~coarse_moves()), good = moved | bits(out.untouched);
+        const MaskOf<V> far = out.converged & less(Width<V>::all(call.far_trial), newton.opening);
+        MaskOf<V> converged = out.converged & ~coarse_moves();
+        if (any(far)) converged = converged & (~far | newton.is_certified());
+        const unsigned moved = bits(converged), good = moved | bits(out.untouched);
         const Tile *tile = newton.s.tile;
         if (call.report)
             note_worst_bond(
@@ -205,7 +209,7 @@ struct LdlPositions {
         if (moved) {
             newton.displace();
             if (call.virial) add_virial(moved);
-            write_atoms(moved);
+            write_atoms(moved, good & ~moved);
             count_moved(tally, __builtin_popcount(moved), out.solves);
         }
         return bits(in_use) & ~good;

@@ -85,9 +85,23 @@ struct StarPositions {
         if (call.lambda) write_multipliers(tau, good);
         if (!moved) return good;
         if (call.virial) add_virial(b, tau, moved);
-        atoms.move(call, shift, moved);
+        const bool mixed = moved != all_of<V> && good == all_of<V>;
+        // What is right already moves by -0, which leaves every bit: no lane is masked.
+        if (__builtin_expect(mixed, 0)) {
+            HOL_UNROLL
+            for (int k = 0; k <= N; ++k) {
+                const Vector3<V> all = shift[k];
+                put(shift[k],
+                    Vector3<V>{keep_or_stay(all.x, moved), keep_or_stay(all.y, moved), keep_or_stay(all.z, moved)});
+            }
+        }
+        atoms.move(call, shift, mixed ? all_of<V> : moved);
         count_moved(tally, __builtin_popcount(moved), solves);
         return good;
+    }
+
+    HOL_FORCED static V keep_or_stay(const V &a, unsigned moved) {
+        return select(Width<V>::of_bits(moved), a, Width<V>::all(-0.0));
     }
 
     inline HOL_FORCED void write_multipliers(const V *tau, unsigned which) const {
