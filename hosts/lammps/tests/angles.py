@@ -5,10 +5,11 @@
     angles.py make MOLECULE N [DECIMALS]   writes data, coefficients.lmp and bodies.txt: N^3 molecules on a lattice, turned at
                                            random; angles in degrees, rounded to so many decimals
     angles.py check DUMP DT K              the first molecule of the dump's first step, tied by springs K to where data has it,
-                                           goes on to the last step by velocity Verlet with SHAKE, bond after bond until nothing
-                                           moves, and by RATTLE; says how far the dump is from there
+                                           goes on to the last step by velocity Verlet with SHAKE, constraint after constraint
+                                           until nothing moves, and by RATTLE; says how far the dump is from there
 
-Python's own arithmetic, and nothing of the library.
+Python's own arithmetic, and nothing of the library. An atom in the plane of its three neighbours, or on the line of its two, is
+held where these are, r_0 = sum c_k r_k, as its distances do not say it to first order.
 """
 import math
 import random
@@ -161,7 +162,31 @@ def read_data():
         body = [int(w) for w in line.split()[2:]]
         if body[0] in atoms:
             pairs.update((a, b) for a in body for b in body if a < b)
-    return {a: masses[t] for a, (t, _) in atoms.items()}, {a: x for a, (_, x) in atoms.items()}, sorted(pairs)
+    home = {a: x for a, (_, x) in atoms.items()}
+    bonds = [(int(w[2]), int(w[3])) for w in sections.get("Bonds", []) if int(w[2]) in atoms]
+    centres = flat_centres(home, bonds)
+    outer = [(a, b) for a, b in pairs if not any(a == c and b in n or b == c and a in n for c, (n, _) in centres.items())]
+    return {a: masses[t] for a, (t, _) in atoms.items()}, home, sorted(outer), centres
+
+
+def flat_centres(home, bonds):
+    """Atoms that neighbours hold in their plane or on their line: (neighbours, coefficients), by atom."""
+    found = {}
+    for centre in home:
+        near = sorted({a + b - centre for a, b in bonds if centre in (a, b)})
+        if len(near) not in (2, 3):
+            continue
+        d = [add(home[a], home[centre], -1) for a in near]
+        if len(near) == 2:
+            normal = cross(*d)
+            parts = [math.sqrt(dot(d[1], d[1])), math.sqrt(dot(d[0], d[0]))]
+        else:
+            faces = [cross(d[(k + 1) % 3], d[(k + 2) % 3]) for k in range(3)]
+            normal = [dot(d[0], faces[0])]
+            parts = [math.copysign(math.sqrt(dot(face, face)), dot(face, faces[0])) for face in faces]
+        if dot(normal, normal) < 1e-20:
+            found[centre] = (near, [part / sum(parts) for part in parts])
+    return found
 
 
 def read_dump(name):
@@ -183,12 +208,28 @@ def read_dump(name):
     return steps[0], steps[-1]
 
 
-def sweep(pairs, masses, work):
-    """Pair after pair until nothing moves. work(a, b, weight) mends one pair and says by how much it was off."""
+def settle(centres, masses, x):
+    """Puts the atoms' vectors onto r_0 = sum c_k r_k, one after the other; gives how far off the worst was."""
+    worst = 0
+    for centre, (near, parts) in centres.items():
+        off = x[centre]
+        for a, part in zip(near, parts):
+            off = add(off, x[a], -part)
+        push = 1 / (1 / masses[centre] + sum(part * part / masses[a] for a, part in zip(near, parts)))
+        x[centre] = add(x[centre], off, -push / masses[centre])
+        for a, part in zip(near, parts):
+            x[a] = add(x[a], off, push * part / masses[a])
+        worst = max(worst, math.sqrt(dot(off, off)))
+    return worst
+
+
+def sweep(pairs, masses, centres, x, work):
+    """Constraint after constraint until nothing moves. work(a, b, weight) mends one pair and says by how much it was off."""
     weights = [1 / masses[a] + 1 / masses[b] for a, b in pairs]
     last = math.inf
     for _ in range(20000):
         worst = max(work(k, a, b, w) for k, ((a, b), w) in enumerate(zip(pairs, weights)))
+        worst = max(worst, settle(centres, masses, x))
         # Where lists of distances depend on each other rounding moves to and fro.
         if worst < 1e-15 or (worst < 1e-13 and worst >= last):
             return
@@ -197,7 +238,7 @@ def sweep(pairs, masses, work):
 
 
 def check(dump, dt, strength):
-    masses, home, pairs = read_data()
+    masses, home, pairs, centres = read_data()
     (start, first), (end, last) = read_dump(dump)
     r = {a: first[a][:3] for a in masses}
     v = {a: first[a][3:] for a in masses}
@@ -222,7 +263,7 @@ def check(dump, dt, strength):
             r[b] = add(r[b], ways[k], -push / masses[b])
             return abs(off) / squares[k]
 
-        sweep(pairs, masses, place)
+        sweep(pairs, masses, centres, r, place)
         for a in masses:
             v[a] = [(x - y) / dt for x, y in zip(r[a], before[a])]
         kick()
@@ -235,7 +276,7 @@ def check(dump, dt, strength):
             v[b] = add(v[b], d, -push / masses[b])
             return abs(off) / squares[k]
 
-        sweep(pairs, masses, rate)
+        sweep(pairs, masses, centres, v, rate)
     print("positions", max(math.dist(r[a], last[a][:3]) for a in masses))
     print("velocities", max(math.dist(v[a], last[a][3:]) for a in masses))
     print("moved", max(math.dist(first[a][:3], last[a][:3]) for a in masses))
