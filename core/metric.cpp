@@ -6,6 +6,8 @@
 
 #include "core/caller/box.hpp"
 #include "core/molecules/given/memory_limit.hpp"
+#include "core/rigid/run.hpp"
+#include "core/rigid/verbs.hpp"
 #include "core/run/apart.hpp"
 #include "core/run/diagnose.hpp"
 #include "core/run/execute.hpp"
@@ -97,14 +99,8 @@ std::int64_t more_scratch(const Chains &chains, const EliminationPlan &s) {
     }
 }
 
-void metric_of_all(const Chains &chains, MetricCall &call, double *energy) {
-    if (!(call.kT >= 0) || !std::isfinite(call.kT))
-        throw make_error(Status::value, "kT is %g; it must be finite and not negative", call.kT);
-    if (chains.bodies())
-        throw make_error(Status::unsupported,
-                         "the metric determinant of molecules with rigid bodies is not implemented: of a body alone it "
-                         "is a constant; molecules without bodies need a set of their own");
-    call.sum = energy != nullptr;
+// Returns the sum of ln det.
+double metric_of_bonds(const Chains &chains, MetricCall &call) {
     put_box(chains.box, call.box);
     std::int64_t extended_bytes = 0;
     for (const std::int32_t shape : chains.plan().shapes) {
@@ -119,7 +115,29 @@ void metric_of_all(const Chains &chains, MetricCall &call, double *energy) {
         throw_error(chains, tally,
                     [&](const Tally &bad) { return diagnose(chains, bad, chains.box, arrays, 1, Status::not_finite); });
     }
-    if (energy) *energy = 0.5 * call.kT * tally.log_det;
+    return tally.log_det;
+}
+
+void metric_of_all(const Chains &chains, MetricCall &call, double *energy) {
+    if (!(call.kT >= 0) || !std::isfinite(call.kT))
+        throw make_error(Status::value, "kT is %g; it must be finite and not negative", call.kT);
+    if (chains.bodies() && !rigid::have_metric(*chains.bodies()))
+        throw make_error(Status::unsupported,
+                         "the metric determinant of molecules with rigid bodies is not implemented: of a body alone it "
+                         "is a constant; molecules without bodies need a set of their own");
+    call.sum = energy != nullptr;
+    double sum = 0;
+    if (chains.bodies()) {
+        rigid::Parts parts(chains);
+        if (call.force.x && !call.add) parts.clear_fixed(call.force);
+        MetricCall of_bonds = call;
+        parts.run([&] { sum += metric_of_bonds(chains, of_bonds); });
+        parts.run([&] { sum += rigid::metric(chains, call); });
+        parts.finish();
+    } else {
+        sum = metric_of_bonds(chains, call);
+    }
+    if (energy) *energy = 0.5 * call.kT * sum;
 }
 
 }  // namespace

@@ -30,8 +30,8 @@ public:
         return bond < 0 ? -1 : lengths_[bond % n_lengths_] * lengths_[bond % n_lengths_];
     }
 
-    // All that hang together by bonds between atoms that can move; for the last atom it is kept, as groups come one after
-    // the other.
+    // All that hang together by bonds between atoms that can move; for the last atom it is kept, as groups come one
+    // after the other.
     std::vector<double> lengths_around(Atom atom) const {
         if (around_.count(atom)) return lengths_around_;
         around_.clear();
@@ -252,7 +252,8 @@ private:
     }
 
     // All atoms that join a body; its places are those that fit best. Errors of places add up while atoms join: what
-    // does not fit then may fit the best ones. thin: those on lines and in planes, too, which else are groups of their own.
+    // does not fit then may fit the best ones. thin: those on lines and in planes, too, which else are groups of their
+    // own.
     template <class May, class Take>
     Misfit join_all(int dimension, std::vector<std::int64_t> &atoms, std::vector<double> &places, const May &may,
                     const Take &take, bool thin = false) const {

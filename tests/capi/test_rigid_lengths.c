@@ -430,8 +430,8 @@ static void bodies_and_others_come_in_one_list(void **state)
     hol_chains_destroy(chains);
 }
 
-/** A triple that is straight to 3e-7, whose three lengths look like those among coordinates of six decimals by chance, is
- * not straight where the molecule's other lengths have full digits; where they are such, too, it is. */
+/** A triple that is straight to 3e-7, whose three lengths look like those among coordinates of six decimals by chance,
+ * is not straight where the molecule's other lengths have full digits; where they are such, too, it is. */
 static void few_lengths_are_rounded_only_if_others_are(void **state)
 {
     (void)state;

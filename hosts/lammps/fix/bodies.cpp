@@ -70,7 +70,8 @@ void Bodies::add_list(const char *file) {
         while (words >> tag)
             if (!tags.insert(tag).second) throw ErrorEverywhere(name + " has atom " + std::to_string(tag) + " twice");
         if (tags.size() < 2 || !words.eof())
-            throw ErrorEverywhere(name + ": a number, a type and the IDs of two atoms at least are needed, not: " + line);
+            throw ErrorEverywhere(name +
+                                  ": a number, a type and the IDs of two atoms at least are needed, not: " + line);
         for (Tag atom : tags) listed_[atom].push_back(first_name + static_cast<Tag>(lists_.size()));
         lists_.push_back({tags.size(), name});
     }
@@ -102,9 +103,8 @@ std::vector<Bodies::Part> Bodies::gather(int groupbit, const std::vector<int> &w
             tell(atom->molecule[i], i);
     }
     std::vector<Part> parts = route(world, outgoing).items;
-    std::sort(parts.begin(), parts.end(), [](const Part &p, const Part &q) {
-        return p.body != q.body ? p.body < q.body : p.tag < q.tag;
-    });
+    std::sort(parts.begin(), parts.end(),
+              [](const Part &p, const Part &q) { return p.body != q.body ? p.body < q.body : p.tag < q.tag; });
     return parts;
 }
 
@@ -215,8 +215,8 @@ void Bodies::check(const std::vector<Group> &groups, const std::vector<Fit> &fit
     most_ = {numbers[0], numbers[1], words(static_cast<Tag>(numbers[2])), ""};
     if (!templates_.empty()) most_.name = templates_[static_cast<std::size_t>(numbers[3])].name;
     if (most_.part > too_far)
-        throw ErrorEverywhere("an atom of " + most_.whose + " is " +
-                              std::to_string(most_.distance) + " from where " + most_.name +
+        throw ErrorEverywhere("an atom of " + most_.whose + " is " + std::to_string(most_.distance) + " from where " +
+                              most_.name +
                               " has it, more than a tenth of its shortest distance: another shape, another order of "
                               "atoms, or the mirror image; rigid without a file takes molecules as they stand");
 }
@@ -237,7 +237,9 @@ std::vector<BodyAtom> Bodies::select(int groupbit, const std::vector<int> &which
         if (fits[g].best < 0) continue;
         const Points &shape = templates_[fits[g].best].at;
         for (std::size_t k = 0; k < shape.size(); ++k)
-            bodies.push_back({groups[g].first->body, groups[g].first->tag, groups[g].first[k].tag,
+            bodies.push_back({groups[g].first->body,
+                              groups[g].first->tag,
+                              groups[g].first[k].tag,
                               {shape[k][0], shape[k][1], shape[k][2]}});
     }
     return bodies;

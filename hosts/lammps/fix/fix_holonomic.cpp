@@ -24,7 +24,8 @@ FixHolonomic::FixHolonomic(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, a
     if (atom->molecular == Atom::TEMPLATE)
         error->all(FLERR, "Fix holonomic: the atom style must have bonds of its own, not from molecule templates"s);
     read_options(narg, arg, selection_.read(narg, arg, 3));
-    if (selection_.empty()) error->all(FLERR, "Illegal fix holonomic command: nothing is selected (b, t, m, rigid or bodies)"s);
+    if (selection_.empty())
+        error->all(FLERR, "Illegal fix holonomic command: nothing is selected (b, t, m, rigid or bodies)"s);
 
     virial_global_flag = virial_peratom_flag = 1;
     thermo_virial = 1;

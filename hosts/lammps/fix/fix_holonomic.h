@@ -159,10 +159,10 @@ private:
     double last_box_[6] = {0};   // at the end of that step
     bool reruns_ = false;
 
-    int max_rows_ = 0;  // of array_local
-    double tolerance_ = 1e-3;      // by which part lengths that depend on each other may be adjusted
-    double told_adjustment_ = 0;   // of those, the part that a warning has named
-    double told_ = 0;   // of the bodies' displacements, the part of the shortest distance that a warning has named
+    int max_rows_ = 0;            // of array_local
+    double tolerance_ = 1e-3;     // by which part lengths that depend on each other may be adjusted
+    double told_adjustment_ = 0;  // of those, the part that a warning has named
+    double told_ = 0;  // of the bodies' displacements, the part of the shortest distance that a warning has named
 };
 
 }  // namespace LAMMPS_NS

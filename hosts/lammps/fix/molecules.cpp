@@ -47,10 +47,11 @@ void FixHolonomic::tell_adjustment() {
     if (!(most.part > 1e-6 && most.part > 1.001 * told_adjustment_)) return;
     told_adjustment_ = most.part;
     if (comm->me == 0)
-        error->warning(FLERR, "Fix holonomic: bonds and angles that depend on each other do not fit to the last digit: "
-                              "distances are adjusted in the least way, that of atoms " +
-                                  std::to_string(most.from) + " and " + std::to_string(most.to) + " most, by " +
-                                  std::to_string(100 * most.part) + " per cent");
+        error->warning(FLERR,
+                       "Fix holonomic: bonds and angles that depend on each other do not fit to the last digit: "
+                       "distances are adjusted in the least way, that of atoms " +
+                           std::to_string(most.from) + " and " + std::to_string(most.to) + " most, by " +
+                           std::to_string(100 * most.part) + " per cent");
 }
 
 /** Likewise. */
@@ -59,8 +60,8 @@ void FixHolonomic::tell_displacement() {
     if (!(most.part > Bodies::unremarkable && most.part > 1.001 * told_)) return;
     told_ = most.part;
     if (comm->me == 0)
-        error->warning(FLERR, "Fix holonomic: an atom of " + most.whose + " is " +
-                                  std::to_string(most.distance) + " from where " + most.name +
+        error->warning(FLERR, "Fix holonomic: an atom of " + most.whose + " is " + std::to_string(most.distance) +
+                                  " from where " + most.name +
                                   " has it, the largest displacement: it is moved there before the run");
 }
 

@@ -86,8 +86,7 @@ bool is_forest(const Shape &shape) {
     };
     bool forest = true;
     for (const Body &body : shape.bodies)
-        for (std::size_t k = 1; k < body.places.size(); ++k)
-            forest &= join_parts(body.places[0], body.places[k]);
+        for (std::size_t k = 1; k < body.places.size(); ++k) forest &= join_parts(body.places[0], body.places[k]);
     for (const auto &pair : shape.pairs) forest &= join_parts(pair[0], pair[1]);
     return forest;
 }
@@ -140,9 +139,8 @@ Shape shape_of(const std::vector<RigidBond> &bonds, const std::vector<BodyAtom> 
     shape.n_atoms = static_cast<int>(tags.size());
     // However they have come here: molecules alike have one shape.
     std::vector<BodyAtom> parts = body_atoms;
-    std::sort(parts.begin(), parts.end(), [](const BodyAtom &a, const BodyAtom &b) {
-        return std::tie(a.body, a.atom) < std::tie(b.body, b.atom);
-    });
+    std::sort(parts.begin(), parts.end(),
+              [](const BodyAtom &a, const BodyAtom &b) { return std::tie(a.body, a.atom) < std::tie(b.body, b.atom); });
     std::map<Tag, Body> bodies;
     for (const BodyAtom &atom : parts) {
         Body &body = bodies[atom.body];

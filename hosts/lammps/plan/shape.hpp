@@ -50,8 +50,8 @@ struct Shape {
 };
 
 /** The shape of a molecule and the tags at its places: along a linear chain from its end of lower tag, else ascending.
- * Its atoms are those of the bonds. Atoms that distances hold on a line, three or more, are a body, too, where the other
- * distances do not depend on each other; where they do, the library finds out what they hold. */
+ * Its atoms are those of the bonds. Atoms that distances hold on a line, three or more, are a body, too, where the
+ * other distances do not depend on each other; where they do, the library finds out what they hold. */
 Shape shape_of(const std::vector<RigidBond> &bonds, const std::vector<BodyAtom> &bodies, std::vector<Tag> &tags);
 
 /** A shape travels as numbers. */

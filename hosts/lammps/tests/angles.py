@@ -282,7 +282,12 @@ def check(dump, dt, strength):
     print("moved", max(math.dist(first[a][:3], last[a][:3]) for a in masses))
 
 
-if sys.argv[1] == "make":
-    make(sys.argv[2], int(sys.argv[3]), int(sys.argv[4]) if len(sys.argv) > 4 else 12)
-else:
-    check(sys.argv[2], float(sys.argv[3]), float(sys.argv[4]))
+def main():
+    if sys.argv[1] == "make":
+        make(sys.argv[2], int(sys.argv[3]), int(sys.argv[4]) if len(sys.argv) > 4 else 12)
+    else:
+        check(sys.argv[2], float(sys.argv[3]), float(sys.argv[4]))
+
+
+if __name__ == "__main__":
+    main()
