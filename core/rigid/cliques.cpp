@@ -242,7 +242,7 @@ private:
         for (const std::int64_t atom : atoms) body_of_[atom] = body;
         const Misfit misfit = join_all(
             dimension, atoms, places, [&](Atom atom) { return is_free(atom); },
-            [&](Atom atom) { body_of_[atom] = body; }, true);
+            [&](Atom atom) { body_of_[atom] = body; });
         const Distances wanted = distances(atoms);
         if (misfit.error > Decimals(wanted, tolerance_, around(atoms)).most()) refuse(atoms, misfit);
         note(atoms, misfit);
@@ -252,19 +252,17 @@ private:
     }
 
     // All atoms that join a body; its places are those that fit best. Errors of places add up while atoms join: what
-    // does not fit then may fit the best ones. thin: those on lines and in planes, too, which else are groups of their
-    // own.
+    // does not fit then may fit the best ones.
     template <class May, class Take>
     Misfit join_all(int dimension, std::vector<std::int64_t> &atoms, std::vector<double> &places, const May &may,
-                    const Take &take, bool thin = false) const {
+                    const Take &take) const {
         const Decimals decimals(distances(atoms), tolerance_, around(atoms));
         Misfit misfit = misfit_of(distances(atoms), places);
         for (std::size_t before = 0; before != atoms.size();) {
             before = atoms.size();
             for (std::size_t next = 0; next < atoms.size(); ++next)
                 for (const Partner &partner : bonds_of_.at(atoms[next]))
-                    if (may(partner.atom) && join(partner.atom, dimension, decimals, thin, atoms, places))
-                        take(partner.atom);
+                    if (may(partner.atom) && join(partner.atom, dimension, decimals, atoms, places)) take(partner.atom);
             if (atoms.size() != before) misfit = fit_places(distances(atoms), dimension, places);
         }
         return misfit;
@@ -277,7 +275,7 @@ private:
     }
 
     // An atom joins a body that holds it by more distances than its place has coordinates, all of which it fits.
-    bool join(std::int64_t atom, int dimension, const Decimals &of_body, bool thin, std::vector<std::int64_t> &atoms,
+    bool join(std::int64_t atom, int dimension, const Decimals &of_body, std::vector<std::int64_t> &atoms,
               std::vector<double> &places) const {
         std::vector<std::int64_t> near{atom};
         std::vector<double> there{0, 0, 0};
@@ -287,7 +285,7 @@ private:
             there.insert(there.end(), places.begin() + static_cast<std::ptrdiff_t>(3 * a),
                          places.begin() + static_cast<std::ptrdiff_t>(3 * a + 3));
         }
-        if (static_cast<int>(near.size()) < dimension + 2) return thin && join_thin(dimension, near, atoms, places);
+        if (static_cast<int>(near.size()) < dimension + 2) return false;
         Distances wanted(static_cast<std::int64_t>(near.size()));
         for (std::int64_t i = 1; i < wanted.n; ++i) wanted.at(i, 0) = length_between(atom, near[at(i)]);
         if (!locate(wanted, dimension, there)) return false;
@@ -299,47 +297,6 @@ private:
         if (!allows(decimals) && !allows(of_body)) return false;
         atoms.push_back(atom);
         places.insert(places.end(), there.begin(), there.begin() + 3);
-        return true;
-    }
-
-    // So does one on a line with two of its atoms (a nitrile at a methyl group), or in a plane with three: its place is
-    // a combination of theirs. near: the atom, then those of the body that it has distances to.
-    bool join_thin(int dimension, const std::vector<Atom> &near, std::vector<Atom> &atoms,
-                   std::vector<double> &places) const {
-        for (std::size_t a = 1; a < near.size(); ++a)
-            for (std::size_t b = 1; b < a; ++b) {
-                if (bond_between(near[a], near[b]) < 0) continue;
-                if (join_among({near[0], near[a], near[b]}, atoms, places)) return true;
-                for (std::size_t c = 1; dimension == 3 && c < b; ++c)
-                    if (bond_between(near[a], near[c]) >= 0 && bond_between(near[b], near[c]) >= 0 &&
-                        join_among({near[0], near[a], near[b], near[c]}, atoms, places))
-                        return true;
-            }
-        return false;
-    }
-    bool join_among(const std::vector<Atom> &group_atoms, std::vector<Atom> &atoms, std::vector<double> &places) const {
-        const Group group = look_at(distances(group_atoms), tolerance_, around(group_atoms));
-        if (group.kind != Group::dependent || group.dimension != static_cast<int>(group_atoms.size()) - 2) return false;
-        const double *const x = group.places.data();  // of the atom, of the first of the others, ..
-        double part[2] = {(x[0] - x[3]) / (x[6] - x[3]), 0};
-        if (group.dimension == 2) {
-            const double u[2] = {x[6] - x[3], x[7] - x[4]}, v[2] = {x[9] - x[3], x[10] - x[4]},
-                         w[2] = {x[0] - x[3], x[1] - x[4]}, area = u[0] * v[1] - u[1] * v[0];
-            if (!(std::fabs(area) > 1e-2 * (u[0] * u[0] + u[1] * u[1]))) return false;
-            part[0] = (w[0] * v[1] - w[1] * v[0]) / area;
-            part[1] = (u[0] * w[1] - u[1] * w[0]) / area;
-        }
-        const auto place = [&](std::size_t k, int c) {
-            const auto its = std::find(atoms.begin(), atoms.end(), group_atoms[k]) - atoms.begin();
-            return places[at(3 * its + c)];
-        };
-        double there[3];
-        for (int c = 0; c < 3; ++c) {
-            there[c] = place(1, c);
-            for (std::size_t k = 2; k < group_atoms.size(); ++k) there[c] += part[k - 2] * (place(k, c) - place(1, c));
-        }
-        atoms.push_back(group_atoms[0]);
-        places.insert(places.end(), there, there + 3);
         return true;
     }
 
