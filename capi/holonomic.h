@@ -424,10 +424,9 @@ HOL_API int hol_chains_add_linear_molecules(hol_chains *chains, int64_t n_molecu
  * that moves atoms by box vectors between two calls says so by hol_chains_set_images; within a position step r_ref and
  * r have the same images. Distances that depend on each other become no bodies here: the calls that meet them report
  * them. These molecules are numbered and treated as those with bodies (hol_chains_add_rigid), and take some 1 to 6
- * microseconds for each few bonds. hol_metric, hol_inverse_create and hol_project_positions_along refuse such sets or
- * molecules (HOL_ERR_UNSUPPORTED).
- * @return as hol_chains_add_bonds; HOL_ERR_VALUE also for a bond between two fixed atoms and for images beyond 2^31. On
- *         an error nothing is added. Since 0.3.
+ * microseconds for each few bonds. hol_inverse_create and hol_project_positions_along refuse such molecules
+ * (HOL_ERR_UNSUPPORTED). A bond between two fixed atoms is in no equation, and its images are not kept.
+ * @return as hol_chains_add_bonds; HOL_ERR_VALUE also for images beyond 2^31. On an error nothing is added. Since 0.3.
  */
 HOL_API int hol_chains_add_bonds_with_images(hol_chains *chains, int64_t n_bonds, const int64_t *pairs,
                                              const double *lengths, const int64_t *images);
@@ -1361,7 +1360,8 @@ HOL_API int hol_impose_view(const hol_chains *chains, const hol_view *r, hol_rep
  * Total force, total torque and the trace of the virial of the force are zero.
  * Trees of up to eight bonds at an atom and rings without side atoms cost up to twice what linear chains do. All others
  * are found in twice the precision, a hundred times as slowly: about a microsecond a bond, and more where many bonds
- * meet at an atom (20 with ten) or a network fills its factor.
+ * meet at an atom (20 with ten) or a network fills its factor; so are molecules whose images are told
+ * (hol_chains_add_bonds_with_images, since 0.3).
  * @return HOL_OK; HOL_ERR_NULL (chains or r); HOL_ERR_VALUE (kT, mode); HOL_ERR_UNSUPPORTED (molecules with rigid
  *         bodies); HOL_ERR_NOT_FINITE; HOL_ERR_DEGENERATE; HOL_ERR_MEMORY. Thread-safe on one handle. Since 0.1.
  */

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <string>
 #include <unordered_map>
+#include <unordered_set>
 
 namespace holonomic::rigid {
 
@@ -27,6 +28,24 @@ public:
     double square(Atom i, Atom j) const {
         const std::int64_t bond = bond_between(i, j);
         return bond < 0 ? -1 : lengths_[bond % n_lengths_] * lengths_[bond % n_lengths_];
+    }
+
+    // All that hang together by bonds between atoms that can move; for the last atom it is kept, as groups come one
+    // after the other.
+    std::vector<double> lengths_around(Atom atom) const {
+        if (around_.count(atom)) return lengths_around_;
+        around_.clear();
+        around_.insert(atom);
+        lengths_around_.clear();
+        for (std::vector<Atom> stack{atom}; !stack.empty();) {
+            const Atom next = stack.back();
+            stack.pop_back();
+            for (const Partner &partner : bonds_of_.at(next)) {
+                lengths_around_.push_back(length(partner.bond));
+                if (around_.insert(partner.atom).second) stack.push_back(partner.atom);
+            }
+        }
+        return lengths_around_ = each_once(std::move(lengths_around_));
     }
 
     Search(const Masses &masses, const BondList &list, const double *lengths, std::int64_t n_lengths, double tolerance,
@@ -85,7 +104,7 @@ private:
                              "is one too many: the atoms that it and the bonds around it join have fewer freedoms than "
                              "bonds; hol_chains_add_rigid holds such a part by coordinates");
         std::sort(clique.begin(), clique.end());
-        const Group group = look_at(distances(clique), tolerance_);
+        const Group group = look_at(distances(clique), tolerance_, around(clique));
         if (group.kind == Group::impossible) refuse(clique, group.misfit);
         note(clique, group.misfit);
     }
@@ -122,15 +141,19 @@ private:
     void check_shared(std::int64_t bond, const std::vector<std::int64_t> &atoms) {
         if (is_together(atoms) || found_.linear.has_together(atoms) || !depend(atoms)) return;
         if (left_out_.empty()) return found_.shared.push_back(bond);
-        Group group = look_at(distances(atoms), tolerance_);
+        Group group = look_at(distances(atoms), tolerance_, around(atoms));
         std::vector<std::int64_t> all = atoms;
         std::vector<double> places = group.places;
         group.misfit = join_all(
             group.dimension, all, places, [&](Atom atom) { return std::count(all.begin(), all.end(), atom) == 0; },
             [](Atom) {});
-        if (group.misfit.error > Decimals(distances(all), tolerance_).most()) refuse(all, group.misfit);
+        if (group.misfit.error > Decimals(distances(all), tolerance_, around(all)).most()) refuse(all, group.misfit);
         note(all, group.misfit);
         found_.linear.add({std::move(all), std::move(places), group.dimension});
+    }
+
+    MoleculeLengths around(const std::vector<Atom> &atoms) const {
+        return [this, atom = atoms[0]] { return lengths_around(atom); };
     }
 
     bool is_free(std::int64_t atom) const { return bonds_of_.count(atom) && !body_of_.count(atom); }
@@ -165,7 +188,7 @@ private:
 
     bool depend(const std::vector<std::int64_t> &atoms) const {
         const Distances wanted = distances(atoms);
-        const Group group = look_at(wanted, tolerance_);
+        const Group group = look_at(wanted, tolerance_, around(atoms));
         if (group.kind == Group::impossible) refuse(atoms, group.misfit);
         return group.kind == Group::dependent;
     }
@@ -202,7 +225,7 @@ private:
 
     void take(std::vector<std::int64_t> clique) {
         std::sort(clique.begin(), clique.end());
-        const Group group = look_at(distances(clique), tolerance_);
+        const Group group = look_at(distances(clique), tolerance_, around(clique));
         if (group.kind == Group::impossible) refuse(clique, group.misfit);
         take(clique, group.places, group.dimension);
     }
@@ -221,7 +244,7 @@ private:
             dimension, atoms, places, [&](Atom atom) { return is_free(atom); },
             [&](Atom atom) { body_of_[atom] = body; });
         const Distances wanted = distances(atoms);
-        if (misfit.error > Decimals(wanted, tolerance_).most()) refuse(atoms, misfit);
+        if (misfit.error > Decimals(wanted, tolerance_, around(atoms)).most()) refuse(atoms, misfit);
         note(atoms, misfit);
         found_.sizes.push_back(static_cast<std::int64_t>(atoms.size()));
         found_.atoms.insert(found_.atoms.end(), atoms.begin(), atoms.end());
@@ -233,7 +256,7 @@ private:
     template <class May, class Take>
     Misfit join_all(int dimension, std::vector<std::int64_t> &atoms, std::vector<double> &places, const May &may,
                     const Take &take) const {
-        const Decimals decimals(distances(atoms), tolerance_);
+        const Decimals decimals(distances(atoms), tolerance_, around(atoms));
         Misfit misfit = misfit_of(distances(atoms), places);
         for (std::size_t before = 0; before != atoms.size();) {
             before = atoms.size();
@@ -267,7 +290,7 @@ private:
         for (std::int64_t i = 1; i < wanted.n; ++i) wanted.at(i, 0) = length_between(atom, near[at(i)]);
         if (!locate(wanted, dimension, there)) return false;
         const Misfit misfit = misfit_of(wanted, there);
-        const Decimals decimals(distances(near), tolerance_);
+        const Decimals decimals(distances(near), tolerance_, around(near));
         const auto allows = [&](const Decimals &open) {
             return dimension < 3 ? open.allow_joining(misfit) : misfit.error <= 4 * open.most();
         };
@@ -331,6 +354,8 @@ private:
     std::unordered_map<std::int64_t, std::vector<Partner>> bonds_of_;  // of atoms that can move
     std::unordered_map<std::int64_t, std::size_t> body_of_;
     Cliques found_;
+    mutable std::unordered_set<Atom> around_;  // the molecule that was asked for last
+    mutable std::vector<double> lengths_around_;
 };
 
 }  // namespace

@@ -39,6 +39,12 @@ public:
         return lengths_[found->second] * lengths_[found->second];
     }
     const std::vector<std::pair<std::int32_t, std::int32_t>> &of(Atom atom) const { return of_[at(atom)]; }
+    std::vector<double> lengths_around(Atom) const {
+        std::vector<double> all;
+        for (const auto &list : of_)
+            for (const auto &partner : list) all.push_back(lengths_[partner.second]);
+        return each_once(all);
+    }
 
 private:
     const double *const lengths_;
@@ -68,7 +74,7 @@ bool depend(const Partners &partners, const std::int32_t (&atoms)[n], double tol
             if (i != j)
                 wanted.at(static_cast<std::int64_t>(i), static_cast<std::int64_t>(j)) =
                     std::sqrt(partners.square(atoms[i], atoms[j]));
-    return look_at(wanted, tolerance).kind != Group::independent;
+    return look_at(wanted, tolerance, [&] { return partners.lengths_around(atoms[0]); }).kind != Group::independent;
 }
 
 // Three or four atoms, of which i is the lowest.

@@ -114,23 +114,48 @@ double of_heights(const Distances &wanted) { return 2 * epsilon * static_cast<do
 
 bool is_float(double x) { return static_cast<double>(static_cast<float>(x)) == x; }
 
-// The least number of decimals that all values have, to a few roundings of doubles, or of floats that became doubles;
-// -1 if more than `most`, or if so many decimals are all that a number of this size has: what is as near by chance is
-// not rounded.
-int decimals_of(const std::vector<double> &values, int most, bool of_squares, double likely = 3e-4) {
-    constexpr double of_float = 0.51 * std::numeric_limits<float>::epsilon();
-    double scale = 1;
-    for (int p = 0; p <= most; ++p, scale *= 10) {
+// Numbers of so many decimals, or square roots of those.
+struct Grid {
+    int decimals;
+    bool of_squares;
+    // To a few roundings of doubles, or of floats that became doubles. chance: times that of any number.
+    bool has(double length, double &chance) const {
+        constexpr double of_float = 0.51 * std::numeric_limits<float>::epsilon();
+        const double scale = std::pow(10.0, decimals);
+        const double x = of_squares ? length * scale * (length * scale) : length * scale;
+        // Coordinates far from the origin are off by more than these squares are.
+        const double of_places = of_squares ? std::min(1e-12 * scale * scale, 0.03) : 0;
+        const double margin = std::max((is_float(length) ? of_float : 4 * epsilon) * x, of_places);
+        chance *= std::min(1.0, 2 * margin);
+        return x >= 0.5 && std::fabs(x - std::round(x)) <= margin;
+    }
+    bool has_all(const std::vector<double> &values, double &chance) const {
+        return std::all_of(values.begin(), values.end(), [&](double value) { return has(value, chance); });
+    }
+    // Most lengths of the molecule beside the group's, which are on the grid.
+    bool has_most(const std::vector<double> &molecule, std::ptrdiff_t n_of_group) const {
         double chance = 1;
-        const auto fits = [&](double length) {
-            const double x = of_squares ? length * scale * (length * scale) : length * scale;
-            // Coordinates far from the origin are off by more than these squares are.
-            const double of_places = of_squares ? std::min(1e-12 * scale * scale, 0.03) : 0;
-            const double margin = std::max((is_float(length) ? of_float : 4 * epsilon) * x, of_places);
-            chance *= std::min(1.0, 2 * margin);
-            return x >= 0.5 && std::fabs(x - std::round(x)) <= margin;
-        };
-        if (std::all_of(values.begin(), values.end(), fits)) return chance < likely ? p : -1;
+        const auto on_grid =
+            std::count_if(molecule.begin(), molecule.end(), [&](double value) { return has(value, chance); });
+        const auto others = static_cast<std::ptrdiff_t>(molecule.size()) - n_of_group;
+        return others <= 0 || 2 * (on_grid - n_of_group) > others;
+    }
+};
+
+// The least number of decimals that all values have; -1 if more than `most`, or if so many decimals are all that a
+// number of this size has: what is as near by chance is not rounded. Few values are never sure, and the molecule's
+// others decide.
+int decimals_of(const std::vector<double> &values, int most, bool of_squares, double likely = 3e-4,
+                const MoleculeLengths &molecule = nullptr) {
+    constexpr double sure = 1e-9;
+    for (int p = 0; p <= most; ++p) {
+        double chance = 1;
+        const Grid grid{p, of_squares};
+        if (!grid.has_all(values, chance)) continue;
+        const bool rounded =
+            chance < sure ||
+            (chance < likely && (!molecule || grid.has_most(molecule(), static_cast<std::ptrdiff_t>(values.size()))));
+        return rounded ? p : -1;
     }
     return -1;
 }
@@ -141,6 +166,7 @@ constexpr int few_decimals = 3;
 // The coarsest of the roundings that single lengths show: others may have more decimals, or full digits.
 struct Roundings {
     double coarsest = 0;
+    double with_zeros = 0;  // the same, if round numbers have lost zeros at their ends
     std::ptrdiff_t count = 0;
 };
 Roundings roundings_of(const std::vector<double> &values) {
@@ -152,19 +178,10 @@ Roundings roundings_of(const std::vector<double> &values) {
                                : p < 0 && is_float(value) ? std::numeric_limits<float>::epsilon() * value
                                                           : 0;
         found.coarsest = std::max(found.coarsest, rounded);
+        found.with_zeros = std::max(found.with_zeros, p < 0 ? rounded : std::pow(10.0, -std::max(p, few_decimals)));
         found.count += p >= 0 || rounded > 0;
     }
     return found;
-}
-
-// Those that are held, each once, whatever its last digits.
-std::vector<double> values_of(const Distances &wanted) {
-    std::vector<double> values(wanted.length);
-    std::sort(values.begin(), values.end());
-    const auto alike = [](double a, double b) { return b - a <= 8 * epsilon * b; };
-    values.erase(std::unique(values.begin(), values.end(), alike), values.end());
-    if (!values.empty() && values.front() == 0) values.erase(values.begin());
-    return values;
 }
 
 // Whether places on a grid of so many decimals would be on a line or in a plane: what is off it then is no rounding.
@@ -230,16 +247,24 @@ Misfit fit_places(const Distances &wanted, int dimension, std::vector<double> &p
     return misfit_of(wanted, places);
 }
 
-Decimals::Decimals(const Distances &wanted, double tolerance)
+std::vector<double> each_once(std::vector<double> lengths) {
+    std::sort(lengths.begin(), lengths.end());
+    const auto alike = [](double a, double b) { return b - a <= 8 * epsilon * b; };
+    lengths.erase(std::unique(lengths.begin(), lengths.end(), alike), lengths.end());
+    if (!lengths.empty() && lengths.front() == 0) lengths.erase(lengths.begin());
+    return lengths;
+}
+
+Decimals::Decimals(const Distances &wanted, double tolerance, const MoleculeLengths &all)
     : open_(wanted.n < 5 ? of_few : of_many), most_(rounding) {
-    const std::vector<double> values = values_of(wanted);
+    const std::vector<double> values = each_once(wanted.length);  // 0: none is held
     if (values.empty()) return;
     const double least = values.front();
-    const int of_lengths = decimals_of(values, 12, false);
+    const int of_lengths = decimals_of(values, 12, false, 3e-4, all);
     const Roundings singles = roundings_of(values);
     // Coordinates leave few distances with decimals of their own: those along an axis.
     const bool may_be_places = of_lengths < 0 && 2 * singles.count < static_cast<std::ptrdiff_t>(values.size());
-    int of_places = may_be_places ? decimals_of(values, 6, true) : -1;
+    int of_places = may_be_places ? decimals_of(values, 6, true, 3e-4, all) : -1;
     if (of_places >= 0 && wanted.n < 5 && are_flat_on_grid(wanted, of_places)) of_places = -1;
     // Two rounded bonds say nothing of a third distance that is given in full: the angle may be nearly 180 degrees.
     const auto n_values = static_cast<std::ptrdiff_t>(values.size());
@@ -251,10 +276,11 @@ Decimals::Decimals(const Distances &wanted, double tolerance)
     open_ = std::max(open_, of_single / least);
     are_full_ = of_lengths < 0 && of_places < 0 && of_single == 0;
     if (are_full_ && wanted.n < 5) highest_ = of_heights(wanted);
-    if (tolerance > 0) most_ = std::max(tolerance, std::min(open_, 10 * tolerance));
+    const double with_zeros = most_are ? std::max(open_, singles.with_zeros / least) : open_;
+    if (tolerance > 0) most_ = std::max(tolerance, std::min(with_zeros, 10 * tolerance));
 }
 
-Group look_at(const Distances &wanted, double tolerance) {
+Group look_at(const Distances &wanted, double tolerance, const MoleculeLengths &all) {
     // A group whose square of a height is above this part of the largest square is far from flat, for any tolerance.
     constexpr double high = 0.05;
     const std::int64_t n = wanted.n;
@@ -266,7 +292,7 @@ Group look_at(const Distances &wanted, double tolerance) {
         const double left = places_in(d, n, squares.data(), group.places);
         const bool impossible = d == 3 || (d == most && left < 0);  // they fit no place in space
         if (!impossible && left > high) continue;
-        const Decimals decimals(wanted, tolerance);
+        const Decimals decimals(wanted, tolerance, all);
         group.dimension = d;
         group.misfit = fit_places(wanted, d, group.places);
         const bool must = impossible && !decimals.allow_position(group.misfit);

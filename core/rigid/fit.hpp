@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -38,11 +39,18 @@ bool locate(const Distances &wanted, int dimension, std::vector<double> &places)
 // Moves places [n][3], of which the first `dimension` coordinates are free, to the least sum of squares nearby.
 Misfit fit_places(const Distances &wanted, int dimension, std::vector<double> &places);
 
+// Lengths, each once, whatever its last digits, ascending.
+std::vector<double> each_once(std::vector<double> lengths);
+
+// All lengths of the molecule that a group is of, each once. They are asked for where a group's own are so few that
+// full digits may look rounded by chance: then these have to be rounded likewise.
+using MoleculeLengths = std::function<std::vector<double>()>;
+
 // What the decimals of lengths leave open: by what part places may miss one. Lengths that stand for coordinates of some
 // decimals, as differences of these do, leave open the square of those; full digits leave nothing open but rounding.
 class Decimals {
 public:
-    Decimals(const Distances &wanted, double tolerance);
+    Decimals(const Distances &wanted, double tolerance, const MoleculeLengths &all);
     // Places in fewer dimensions are what the lengths say. square: of the height that is left, of the largest distance.
     bool allow(const Misfit &misfit) const { return misfit.error <= std::min(open_, most_); }
     bool allow(double square, const Misfit &misfit) const { return square <= highest_ && allow(misfit); }
@@ -67,6 +75,6 @@ struct Group {
     Misfit misfit;
     std::vector<double> places;
 };
-Group look_at(const Distances &wanted, double tolerance);
+Group look_at(const Distances &wanted, double tolerance, const MoleculeLengths &all);
 
 }  // namespace holonomic::rigid

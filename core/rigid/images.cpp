@@ -70,8 +70,6 @@ void Chains::add_with_images(std::int64_t n_bonds, const std::int64_t *pairs, co
     check_memory(*this, 2 * n_bonds, bytes_of_body_atom);
     const BondList list{n_bonds, pairs, base, &labels_, 1};
     const FoundMolecules found = find_molecules(masses_, n_atoms_, list);
-    if (!found.unconstrained.empty())
-        throw bond_error(list, Status::value, found.unconstrained[0], "joins two atoms that are held fixed");
     std::vector<rigid::Given> molecules;
     for (const FoundMolecule &molecule : found.molecules) {
         molecules.push_back(given_of(found, molecule, list, lengths, masses_, n_bonds_));
@@ -82,9 +80,16 @@ void Chains::add_with_images(std::int64_t n_bonds, const std::int64_t *pairs, co
                 throw Batch::in_use(*this, atom);
         }
     }
+    // Bonds between two fixed atoms are in no equation.
+    FoundMolecules held;
+    held.unconstrained = found.unconstrained;
+    held.unconstrained_atoms = found.unconstrained_atoms;
+    Batch batch(*this);
+    batch.append_found(held, list, lengths, n_bonds);
     images_.resize(3 * at(n_bonds_), 0);  // what a call that failed has left is behind
     images_.insert(images_.end(), images, images + 3 * n_bonds);
-    commit_rigid(molecules, n_bonds);
+    if (molecules.empty()) return batch.commit();
+    commit_rigid(molecules, 0, &batch);
 }
 
 namespace {
@@ -105,7 +110,8 @@ void Chains::set_images(const std::int64_t *images) {
     std::vector<std::int32_t> told(3 * at(n_bonds_), 0);
     for_told(bodies(), [&](std::int64_t bond) { std::copy_n(images + 3 * bond, 3, told.begin() + 3 * bond); });
     for (std::int64_t e = 0; e < 3 * n_bonds_; ++e) {
-        if (images[e] == told[at(e)]) continue;
+        if (images[e] == told[at(e)] || std::binary_search(unconstrained_.begin(), unconstrained_.end(), e / 3))
+            continue;
         Error error = make_error(Status::value,
                                  "bond %lld has an image, but was added without: hol_chains_add_bonds_with_images adds "
                                  "bonds whose images are told",

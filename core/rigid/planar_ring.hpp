@@ -14,7 +14,7 @@
 namespace holonomic::rigid {
 
 // Graph: for_partners(atom, each) calls each(partner); with_fewer(i, j) is the one that has fewer of them; square(i, j)
-// is their squared distance, -1 where none is held.
+// is their squared distance, -1 where none is held; lengths_around(i) are those of its molecule.
 template <class Graph>
 class PlanarRing {
 public:
@@ -80,7 +80,7 @@ private:
             }
         places_ = turned();
         const Misfit misfit = fit_places(wanted, 2, places_);
-        const Decimals decimals(wanted, tolerance_);
+        const Decimals decimals(wanted, tolerance_, [&] { return graph_.lengths_around(ring_[0]); });
         return decimals.are_full() ? excess <= rounded(n) && misfit.error <= decimals.most() : decimals.allow(misfit);
     }
 

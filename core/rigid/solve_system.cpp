@@ -100,6 +100,7 @@ std::int32_t System::assemble(const Factor<T> &f, const Conformation &rows, cons
 }
 
 template std::int32_t System::assemble(const Factor<double> &, const Conformation &, const Conformation &) const;
+template std::int32_t System::assemble(const Factor<DoublePair> &, const Conformation &, const Conformation &) const;
 
 // Sizes of corrections are compared in the units of each row: |x| sqrt of its diagonal.
 template <class T>

@@ -80,6 +80,10 @@ public:
     // Of carrying the forces of sites off the plane of a body to its masses.
     void add_virial_of_sites(const Conformation &at, const AtomArray &f, const Place &place, double *virial) const;
 
+    // ln det of Z scaled to ones on its diagonal, of Z, and the gradient of the first per node; of rows that are bonds.
+    // The reference's gradients are scratch.
+    Outcome metric(const Conformation &at, double *log_det, double *log_det_z, PairVector *slope) const;
+
     const Shape &shape() const { return s_; }
     const Body &body(const Part &part) const { return bodies_[part.body]; }
 

@@ -23,6 +23,11 @@ void impose(const Chains &chains, const AtomArray &r, Report *report);
 void reactions(const Chains &chains, const AtomArray &r, const Cell &box, const double *lambda, const Reactions &out,
                double *virial);
 
+// Throws Error of Status::unsupported if there are bodies; molecules whose images are told have a metric determinant.
+void need_metric(const Chains &chains);
+// Adds to the force on atoms, or writes it; gives the sum of ln det.
+double metric(const Chains &chains, const MetricCall &call);
+
 // Throws Error of Status::lengths if a reference does not fit, or a trial is stretched beyond reason.
 void check_reference(const Chains &chains, const AtomArray &r, const Cell &box, const char *what);
 // The largest |d.d - a^2| / a^2 of bonds and of the bodies' own distances, where it is larger than what is there.

@@ -178,15 +178,13 @@ static void what_makes_no_sense_is_refused(void **state)
 {
     (void)state;
     const double mass[4] = {1, 1, INFINITY, INFINITY}, one[2] = {1, 1};
-    const int64_t bond[2] = {0, 1}, held[2] = {2, 3}, twice[4] = {0, 1, 1, 0}, itself[2] = {1, 1};
+    const int64_t bond[2] = {0, 1}, twice[4] = {0, 1, 1, 0}, itself[2] = {1, 1};
     const int64_t far[3] = {0, INT64_C(1) << 40, 0}, near[6] = {0, 1, 0, 0, 0, 0};
     int64_t images[6];
     hol_chains *chains;
     CHECK(hol_chains_create(4, mass, &chains));
     CHECK_FAILS(HOL_ERR_VALUE, hol_chains_add_bonds_with_images(chains, 1, bond, one, far));
     assert_message_names("bond 0");
-    CHECK_FAILS(HOL_ERR_VALUE, hol_chains_add_bonds_with_images(chains, 1, held, one, near));
-    assert_message_names("held fixed");
     CHECK_FAILS(HOL_ERR_DEGENERATE, hol_chains_add_bonds_with_images(chains, 2, twice, one, near));
     CHECK_FAILS(HOL_ERR_VALUE, hol_chains_add_bonds_with_images(chains, 1, itself, one, near));
     CHECK_FAILS(HOL_ERR_VALUE, hol_chains_add_bonds_with_images(chains, -1, bond, one, near));
@@ -205,12 +203,126 @@ static void what_makes_no_sense_is_refused(void **state)
     hol_chains_destroy(chains);
 }
 
+/** A bond between two fixed atoms is taken as hol_chains_add_bonds takes it: in no equation. */
+static void a_bond_between_fixed_atoms_is_in_no_equation(void **state)
+{
+    (void)state;
+    const double mass[5] = {1, 2, INFINITY, INFINITY, 3}, r[15] = {0, 0, 0, 1, 0, 0, 0, 5, 0, 7, 0, 0, 1, 1, 0};
+    const double box[9] = {8, 0, 0, 0, 9, 0, 0, 0, 9}, lengths[3] = {3, 1, 1};
+    const int64_t list[6] = {2, 3, 0, 1, 3, 0}, images[9] = {1, 2, 3, [6] = 1}, none[9] = {[6] = 1};
+    double f[15], lambda[2][3], g[2][15];
+    for (int e = 0; e < 15; ++e) f[e] = cos(1.0 + e);
+    for (int told = 0; told < 2; ++told) {
+        hol_chains *chains;
+        int64_t ends[6], kept[9];
+        CHECK(hol_chains_create(5, mass, &chains));
+        CHECK(hol_chains_set_box(chains, box));
+        if (told)
+            CHECK(hol_chains_add_bonds_with_images(chains, 3, list, lengths, images));
+        else
+            CHECK(hol_chains_add_bonds(chains, 3, list, lengths));
+        assert_int_equal(hol_chains_n_bonds(chains), 3);
+        assert_int_equal(hol_chains_n_molecules(chains), 1);
+        assert_int_equal(hol_chains_degrees_of_freedom(chains, 3), 9 - 2);
+        CHECK(hol_chains_pairs(chains, ends));
+        assert_true((ends[0] == 2 && ends[1] == 3) || (ends[0] == 3 && ends[1] == 2));
+        CHECK(hol_forces(chains, r, NULL, f, lambda[told], NULL, g[told], HOL_WRITE, NULL));
+        assert_true(lambda[told][0] == 0);
+        if (told) {
+            CHECK(hol_chains_set_images(chains, images));
+            CHECK(hol_chains_images(chains, kept));
+            assert_memory_equal(kept, none, sizeof none);
+        }
+        hol_chains_destroy(chains);
+    }
+    alike(lambda[0], lambda[1], 3, 1e-14);
+    alike(g[0], g[1], 6, 1e-14);
+    /* alone, too, and with nothing left in the set by a call that is refused */
+    hol_chains *chains;
+    CHECK(hol_chains_create(5, mass, &chains));
+    CHECK(hol_chains_add_bonds_with_images(chains, 1, list, lengths, images));
+    CHECK_FAILS(HOL_ERR_DEGENERATE,
+                hol_chains_add_bonds_with_images(chains, 2, (int64_t[4]){0, 1, 1, 0}, lengths, none));
+    CHECK_FAILS(HOL_ERR_VALUE,
+                hol_chains_add_bonds_with_images(chains, 3, (int64_t[6]){2, 3, 0, 1, 1, 1}, lengths, none));
+    assert_int_equal(hol_chains_n_bonds(chains), 1);
+    assert_int_equal(hol_chains_n_molecules(chains), 0);
+    hol_chains_destroy(chains);
+}
+
+/** The metric is that of whole coordinates; the force is its gradient, with a fixed atom that others share. */
+static void the_metric_is_that_of_whole_coordinates(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 1; seed < 6; ++seed) {
+        const scene s = make(seed);
+        hol_chains *whole, *told;
+        double det[2][3], det_z[2][3], energy[2], force[3][3 * N];
+        CHECK(hol_chains_create(N, masses, &whole));
+        CHECK(hol_chains_add_bonds(whole, B, pairs, s.length));
+        CHECK(hol_chains_create(N, masses, &told));
+        CHECK(hol_chains_set_box(told, cell));
+        CHECK(hol_chains_add_bonds_with_images(told, B, pairs, s.length, s.images));
+        CHECK(hol_metric(whole, s.r, 1.3, det[0], det_z[0], &energy[0], force[0], HOL_WRITE));
+        CHECK(hol_metric(told, s.wrapped, 1.3, det[1], det_z[1], &energy[1], force[1], HOL_WRITE));
+        alike(det[0], det[1], (int)hol_chains_n_molecules(whole), 1e-13);
+        alike(det_z[0], det_z[1], (int)hol_chains_n_molecules(whole), 1e-13);
+        alike(&energy[0], &energy[1], 1, 1e-13);
+        alike(force[0], force[1], 3 * N, 1e-12);
+        memcpy(force[2], s.f, sizeof force[2]);
+        CHECK(hol_metric(told, s.wrapped, 1.3, NULL, NULL, NULL, force[2], HOL_ADD));
+        for (int e = 0; e < 3 * N; ++e)
+            CHECK_AT_MOST(fabs(force[2][e] - s.f[e] - force[1][e]), 1e-12 * (1 + fabs(force[2][e])));
+        for (int e = 0; e < 3 * N; ++e) {
+            const double h = 1e-5;
+            double moved[3 * N], up, down;
+            memcpy(moved, s.wrapped, sizeof moved);
+            moved[e] += h;
+            CHECK(hol_metric(told, moved, 1.3, NULL, NULL, &up, NULL, HOL_WRITE));
+            moved[e] -= 2 * h;
+            CHECK(hol_metric(told, moved, 1.3, NULL, NULL, &down, NULL, HOL_WRITE));
+            CHECK_AT_MOST(fabs((down - up) / (2 * h) - force[1][e]), 1e-5 * (1 + fabs(force[1][e])));
+        }
+        hol_chains_destroy(whole);
+        hol_chains_destroy(told);
+    }
+    /* a fixed atom at a chain of either kind gets what both give it, whatever it had; bodies are refused */
+    const double mass[5] = {1, 2, INFINITY, 3, 4}, ones[2] = {1, 1},
+                 r[15] = {-1.5, 0.7, 0, -1, 0, 0, 0, 0, 0, 1, 0, 0, 1.2, 0.9, 0.3};
+    double force[4][15];
+    for (int which = 1; which < 4; ++which) {
+        hol_chains *chains;
+        for (int e = 0; e < 15; ++e) force[which][e] = e / 3 == 2 ? 77 : 0;
+        CHECK(hol_chains_create(5, mass, &chains));
+        if (which & 1) CHECK(hol_chains_add_bonds(chains, 2, (int64_t[4]){0, 1, 1, 2}, ones));
+        if (which & 2)
+            CHECK(hol_chains_add_bonds_with_images(chains, 2, (int64_t[4]){2, 3, 3, 4}, ones, (int64_t[6]){0}));
+        CHECK(hol_metric(chains, r, 1, NULL, NULL, NULL, force[which], HOL_WRITE));
+        if (which == 3) {
+            const double places[6] = {0, 0, 0, 1, 0, 0};
+            hol_chains *body;
+            CHECK(hol_chains_create(5, mass, &body));
+            CHECK(hol_chains_add_rigid(body, 1, (int64_t[1]){2}, (int64_t[2]){0, 1}, places, 0, NULL, NULL));
+            CHECK_FAILS(HOL_ERR_UNSUPPORTED, hol_metric(body, r, 1, NULL, NULL, NULL, force[0], HOL_WRITE));
+            hol_chains_destroy(body);
+        }
+        hol_chains_destroy(chains);
+    }
+    for (int e = 0; e < 15; ++e)
+        if (e / 3 == 2)
+            CHECK_AT_MOST(fabs(force[3][e] - force[1][e] - force[2][e]), 1e-14);
+        else
+            CHECK_AT_MOST(fabs(force[3][e] - force[e < 6 ? 1 : 2][e]), 1e-14);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(molecules_are_those_of_whole_coordinates),
         cmocka_unit_test(a_ring_round_the_box),
         cmocka_unit_test(what_makes_no_sense_is_refused),
+        cmocka_unit_test(a_bond_between_fixed_atoms_is_in_no_equation),
+        cmocka_unit_test(the_metric_is_that_of_whole_coordinates),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

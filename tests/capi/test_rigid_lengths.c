@@ -430,6 +430,68 @@ static void bodies_and_others_come_in_one_list(void **state)
     hol_chains_destroy(chains);
 }
 
+/** A triple that is straight to 3e-7, whose three lengths look like those among coordinates of six decimals by chance,
+ * is not straight where the molecule's other lengths have full digits; where they are such, too, it is. */
+static void few_lengths_are_rounded_only_if_others_are(void **state)
+{
+    (void)state;
+    const double grid = 1e12;
+    unsigned long long random = 12345;
+    part chance = {.n = 6, .mass = {1, 2, 3, 4, 5, 6}};
+    for (int found = 0; !found;) {
+        double a[2];
+        for (int k = 0; k < 2; ++k) {
+            random = random * 6364136223846793005ULL + 1442695040888963407ULL;
+            a[k] = 1.1 + 0.1 * (double)(random >> 33) / 2147483648.0;
+        }
+        const double lengths[3] = {hypot(a[0], 3.1415927e-7), hypot(a[1], 3.1415927e-7), a[0] + a[1]};
+        found = 1;
+        for (int k = 0; k < 3; ++k) {
+            const double square = lengths[k] * lengths[k] * grid;
+            found = found && fabs(square - round(square)) < 0.02;
+        }
+        memcpy(chance.length, lengths, sizeof lengths);
+    }
+    const int64_t pairs[6][2] = {{0, 1}, {1, 2}, {0, 2}, {2, 3}, {3, 4}, {4, 5}};
+    memcpy(chance.pairs, pairs, sizeof pairs);
+    chance.n_bonds = 6;
+    for (int others_rounded = 0; others_rounded < 2; ++others_rounded) {
+        for (int k = 3; k < 6; ++k) {
+            const double length = 1.1234567891 + 0.0912345678 * k;
+            chance.length[k] = others_rounded ? sqrt(round(length * length * grid) / grid) : length;
+        }
+        hol_chains *chains = chains_of(&chance);
+        assert_int_equal(hol_chains_degrees_of_freedom(chains, 3), others_rounded ? 18 - 3 - 4 : 18 - 6);
+        double largest;
+        CHECK(hol_chains_adjustment(chains, &largest, NULL));
+        assert_true(others_rounded || largest == 0);
+        hol_chains_destroy(chains);
+    }
+}
+
+/** A rounded length that has lost its zero, 0.12 for 0.120, among finer ones. */
+static void zeros_at_the_end_are_lost(void **state)
+{
+    (void)state;
+    part nitrate = {.n = 4, .mass = {14, 16, 16, 16}};
+    for (int i = 0; i < 3; ++i) {
+        const double turn = 2 * acos(-1.0) / 3 * i;
+        nitrate.place[3 + 3 * i] = 0.1204 * cos(turn), nitrate.place[4 + 3 * i] = 0.1204 * sin(turn);
+    }
+    nitrate = add_all(nitrate);
+    for (int k = 0; k < 6; ++k) {
+        const double decimals = nitrate.length[k] < 0.15 ? 1e3 : 1e5;
+        nitrate.length[k] = round(nitrate.length[k] * decimals) / decimals;
+    }
+    hol_chains *chains = chains_of(&nitrate);
+    assert_int_equal(hol_chains_degrees_of_freedom(chains, 3), 6);
+    double largest;
+    CHECK(hol_chains_adjustment(chains, &largest, NULL));
+    CHECK_AT_MOST(largest * 0.12, 5.1e-4);
+    assert_true(largest > 1e-4);
+    hol_chains_destroy(chains);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -439,6 +501,8 @@ int main(void)
         cmocka_unit_test(lengths_that_disagree_are_named_and_nothing_is_added),
         cmocka_unit_test(lengths_with_the_decimals_of_a_file_are_flat_straight_and_rigid),
         cmocka_unit_test(what_decimals_do_not_leave_open_stays),
+        cmocka_unit_test(few_lengths_are_rounded_only_if_others_are),
+        cmocka_unit_test(zeros_at_the_end_are_lost),
         cmocka_unit_test(all_bonds_and_angles_of_ethane),
         cmocka_unit_test(flat_groups_that_share_atoms_turn_about_them),
         cmocka_unit_test(bodies_and_others_come_in_one_list),

@@ -2,8 +2,9 @@
  * Long runs of what topology files mean: what must stay?
  *     long_run_linear STEPS
  * NVE of molecules held by all bonds and all angles with rounded lengths, of bodies that share an atom, of atoms that
- * are one point, centroids that coincide, and sites out of a plane, each atom tied to a place by a spring: lengths
- * within the rounding of coordinates, and energy without a drift. Exit status 1 if one of them fails.
+ * are one point, centroids that coincide, sites out of a plane, bodies by their inertia, bonds whose images are told,
+ * each atom tied to a place by a spring: lengths within the rounding of coordinates, and energy without a drift. Exit
+ * status 1 if one of them fails.
  */
 #include <holonomic.h>
 #include <math.h>
@@ -269,6 +270,37 @@ static int run_others(int64_t n_steps)
         must(hol_chains_add_rigid(chains, 1, &five, atoms, places, 0, NULL, NULL));
         failed += run(&s, chains, n_steps);
     }
+    {
+        /* a body by mass, centre and inertia, that carries three massless sites, on which forces act, too */
+        scene s = {.name = "body by its inertia", .freedoms = 6};
+        const double centre[3] = {0.1, -0.2, 0.3}, inertia[9] = {2.0, 0.1, -0.2, 0.1, 2.5, 0.3, -0.2, 0.3, 3.1};
+        const double sites[9] = {1, 0, 0, 0, 1.1, 0, 0.2, 0.3, -0.9};
+        double places[21];
+        int64_t n_points, sizes[1], atoms[7];
+        must(hol_equimomental_points(5.0, centre, inertia, &n_points, s.mass, places));
+        memcpy(places + 3 * n_points, sites, sizeof sites);
+        s.n = (int)n_points + 3;
+        sizes[0] = s.n;
+        for (int i = 0; i < s.n; ++i) atoms[i] = i;
+        memcpy(s.r, places, sizeof places);
+        hol_chains *chains;
+        must(hol_chains_create(s.n, s.mass, &chains));
+        must(hol_chains_add_rigid(chains, 1, sizes, atoms, places, 0, NULL, NULL));
+        failed += run(&s, chains, n_steps);
+    }
+    {
+        /* a ring that goes round the box, and a bond longer than half of it: images as they are told */
+        scene s = {.name = "bonds with images", .n = 5, .freedoms = 11, .mass = {1, 2, 3, 4, 5}};
+        const int64_t pairs[8] = {0, 1, 1, 2, 2, 0, 3, 4}, images[12] = {0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0};
+        const double box[9] = {7, 0, 0, 0, 7, 0, 0, 0, 7}, lengths[4] = {2.5, 2.5, 2.5, 4.4};
+        for (int i = 0; i < 3; ++i) s.r[3 * i] = 2.333 * i, s.r[3 * i + 1] = 0.8 * (i == 1), s.r[3 * i + 2] = 0.3 * i;
+        s.r[9] = 1, s.r[10] = 3, s.r[12] = 5, s.r[13] = 3.5, s.r[14] = 1;
+        hol_chains *chains;
+        must(hol_chains_create(s.n, s.mass, &chains));
+        must(hol_chains_set_box(chains, box));
+        must(hol_chains_add_bonds_with_images(chains, 4, pairs, lengths, images));
+        failed += run(&s, chains, n_steps);
+    }
     return failed;
 }
 
@@ -281,6 +313,9 @@ int main(int argc, char **argv)
     GROW("isobutane", 9, 4, {-1, 't', 'C'}, {0, 't', 'C'}, {0, 't', 'C'}, {0, 't', 'C'});
     GROW("neopentane", 10, 4, {-1, 't', 'C'}, {0, 't', 'C'}, {0, 't', 'C'}, {0, 't', 'C'}, {0, 't', 'C'});
     GROW("hexane", 11, 4, {-1, 't', 'C'}, {0, 't', 'C'}, {1, 't', 'C'}, {2, 't', 'C'}, {3, 't', 'C'}, {4, 't', 'C'});
+    GROW("hexadecane", 21, 4, {-1, 't', 'C'}, {0, 't', 'C'}, {1, 't', 'C'}, {2, 't', 'C'}, {3, 't', 'C'}, {4, 't', 'C'},
+         {5, 't', 'C'}, {6, 't', 'C'}, {7, 't', 'C'}, {8, 't', 'C'}, {9, 't', 'C'}, {10, 't', 'C'}, {11, 't', 'C'},
+         {12, 't', 'C'}, {13, 't', 'C'}, {14, 't', 'C'});
     GROW("guanidinium", 9, 4, {-1, 'f', 'C'}, {0, 'f', 'N'}, {0, 'f', 'N'}, {0, 'f', 'N'});
     GROW("N-methylacetamide", 9, 4, {-1, 'f', 'C'}, {0, 'e', 'O'}, {0, 't', 'C'}, {0, 'f', 'N'}, {3, 't', 'C'});
     GROW("acetonitrile", 6, 4, {-1, 't', 'C'}, {0, 'l', 'C'}, {1, 'e', 'N'});

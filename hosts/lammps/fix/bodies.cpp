@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <set>
+#include <sstream>
 
 #include "../plan/registry.hpp"
 #include "../plan/route.hpp"
@@ -19,16 +22,17 @@ namespace holonomic_lammps {
 /** Molecules as they stand share a shape if they differ by less than this part of its shortest distance. */
 static constexpr double same_shape = 1e-6;
 
-/** An atom of a molecule of the group. */
+/** An atom of the group, of a molecule or of a body that is listed. */
 struct Bodies::Part {
-    Tag molecule, tag;
+    Tag body, tag;
     int type;
     double x[3];
 };
 
-/** A molecule of the group: its atoms in the order of IDs. */
+/** A molecule of the group or a listed body: its atoms in the order of IDs. */
 struct Bodies::Group {
     const Part *first, *last;
+    bool listed;
     std::size_t size() const { return last - first; }
 };
 
@@ -53,28 +57,71 @@ void Bodies::take_as_they_stand() {
     as_they_stand_ = true;
 }
 
-/** The bookkeeper of a molecule ID learns of all its atoms. */
+void Bodies::add_list(const char *file) {
+    std::istringstream lines(text_of(world, file, "list of bodies"));
+    std::string line;
+    while (std::getline(lines, line)) {
+        std::istringstream words(line.substr(0, line.find('#')));
+        Tag number, type, tag;
+        if (!(words >> number)) continue;
+        const std::string name = "body " + std::to_string(number) + " of the file " + file;
+        words >> type;
+        std::set<Tag> tags;
+        while (words >> tag)
+            if (!tags.insert(tag).second) throw ErrorEverywhere(name + " has atom " + std::to_string(tag) + " twice");
+        if (tags.size() < 2 || !words.eof())
+            throw ErrorEverywhere(name +
+                                  ": a number, a type and the IDs of two atoms at least are needed, not: " + line);
+        for (Tag atom : tags) listed_[atom].push_back(first_name + static_cast<Tag>(lists_.size()));
+        lists_.push_back({tags.size(), name});
+    }
+}
+
+std::string Bodies::words(Tag name) const {
+    return name < first_name ? "molecule " + std::to_string(name) : lists_[name - first_name].words;
+}
+
+/** Whether a group without a template becomes one. */
+bool Bodies::stands(const Group &group) const {
+    return group.size() > 1 && (as_they_stand_ || group.first->body >= first_name);
+}
+
+/** The bookkeeper of a body's name, which is a molecule ID or that of a list, learns of all its atoms. */
 std::vector<Bodies::Part> Bodies::gather(int groupbit, const std::vector<int> &which) const {
     const int n_ranks = size_of(world);
     Outgoing<Part> outgoing(n_ranks);
-    for (int i : which)
-        if (atom->molecule[i] > 0 && atom->mask[i] & groupbit)
-            outgoing[bookkeeper(atom->molecule[i], n_ranks)].push_back(
-                {atom->molecule[i], atom->tag[i], atom->type[i], {atom->x[i][0], atom->x[i][1], atom->x[i][2]}});
+    const auto tell = [&](Tag body, int i) {
+        const double *x = atom->x[i];
+        outgoing[bookkeeper(body, n_ranks)].push_back({body, atom->tag[i], atom->type[i], {x[0], x[1], x[2]}});
+    };
+    for (int i : which) {
+        if (!(atom->mask[i] & groupbit)) continue;
+        const auto listed = listed_.find(atom->tag[i]);
+        if (listed != listed_.end())
+            for (Tag body : listed->second) tell(body, i);
+        else if (atom->molecule_flag && atom->molecule[i] > 0)
+            tell(atom->molecule[i], i);
+    }
     std::vector<Part> parts = route(world, outgoing).items;
-    std::sort(parts.begin(), parts.end(), [](const Part &p, const Part &q) {
-        return p.molecule != q.molecule ? p.molecule < q.molecule : p.tag < q.tag;
-    });
+    std::sort(parts.begin(), parts.end(),
+              [](const Part &p, const Part &q) { return p.body != q.body ? p.body < q.body : p.tag < q.tag; });
     return parts;
 }
 
 std::vector<Bodies::Group> Bodies::group(const std::vector<Part> &parts) const {
     std::vector<Group> groups;
+    std::string trouble;
     const Part *const end = parts.data() + parts.size();
     for (const Part *first = parts.data(), *last = first; first != end; first = last) {
-        while (last != end && last->molecule == first->molecule) ++last;
-        groups.push_back({first, last});
+        while (last != end && last->body == first->body) ++last;
+        groups.push_back({first, last, first->body >= first_name});
+        if (!groups.back().listed) continue;
+        const Listed &body = lists_[first->body - first_name];
+        if (groups.back().size() != body.size)
+            trouble = body.words + " has " + std::to_string(body.size) + " atoms, of which " +
+                      std::to_string(groups.back().size()) + " are in the group";
     }
+    throw_together(world, trouble);
     return groups;
 }
 
@@ -96,6 +143,7 @@ void Bodies::try_template(std::size_t t, const std::vector<Group> &groups, std::
     const Template &molecule = templates_[t];
     const double shortest = shortest_distance(molecule.at);
     for (std::size_t g = 0; g < groups.size(); ++g) {
+        if (groups[g].listed != molecule.listed) continue;
         if (!std::equal(groups[g].first, groups[g].last, molecule.types.begin(), molecule.types.end(),
                         [](const Part &p, int type) { return p.type == type; }))
             continue;
@@ -107,13 +155,13 @@ void Bodies::try_template(std::size_t t, const std::vector<Group> &groups, std::
 
 /** The first molecule that no template fits becomes one; gives whether there was one, on whatever rank. */
 bool Bodies::adopt_next(double within, const std::vector<Group> &groups, const std::vector<Fit> &fits) {
-    constexpr Tag none = MAXTAGINT;
+    constexpr Tag none = std::numeric_limits<Tag>::max();
     Tag mine = none;
     std::size_t at = 0;
     for (; at < groups.size() && mine == none; ++at)
-        if (groups[at].size() > 1 && !(fits[at].part < within)) mine = groups[at].first->molecule;
+        if (stands(groups[at]) && !(fits[at].part < within)) mine = groups[at].first->body;
     Tag first = mine;
-    MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_LMP_TAGINT, MPI_MIN, world);
+    MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT64_T, MPI_MIN, world);
     if (first == none) return false;
     const int owner = bookkeeper(first, size_of(world));
     Template stands;
@@ -143,30 +191,32 @@ bool Bodies::adopt_next(double within, const std::vector<Group> &groups, const s
     stands.at.resize(n);
     MPI_Bcast(stands.types.data(), n, MPI_INT, owner, world);
     MPI_Bcast(stands.at.data(), 3 * n, MPI_DOUBLE, owner, world);
-    stands.name = "molecule " + std::to_string(first);
+    stands.name = words(first);
+    stands.listed = first >= first_name;
     templates_.push_back(stands);
     return true;
 }
 
 void Bodies::check(const std::vector<Group> &groups, const std::vector<Fit> &fits) {
     Displacement most;
+    Tag name = 0;
     for (std::size_t g = 0; g < groups.size(); ++g)
         if (fits[g].best >= 0 && fits[g].part > most.part)
-            most = {fits[g].part, fits[g].distance, groups[g].first->molecule, ""};
+            most.part = fits[g].part, most.distance = fits[g].distance, name = groups[g].first->body;
     struct {
         double part;
         int rank;
     } worst = {most.part, rank_of(world)};
     MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_DOUBLE_INT, MPI_MAXLOC, world);
-    double numbers[4] = {most.part, most.distance, static_cast<double>(most.molecule), 0};
+    double numbers[4] = {most.part, most.distance, static_cast<double>(name), 0};
     for (std::size_t g = 0; g < groups.size(); ++g)
-        if (groups[g].first->molecule == most.molecule) numbers[3] = std::max(fits[g].best, 0);
+        if (groups[g].first->body == name) numbers[3] = std::max(fits[g].best, 0);
     MPI_Bcast(numbers, 4, MPI_DOUBLE, worst.rank, world);
-    most_ = {numbers[0], numbers[1], static_cast<Tag>(numbers[2]), ""};
+    most_ = {numbers[0], numbers[1], words(static_cast<Tag>(numbers[2])), ""};
     if (!templates_.empty()) most_.name = templates_[static_cast<std::size_t>(numbers[3])].name;
     if (most_.part > too_far)
-        throw ErrorEverywhere("an atom of molecule " + std::to_string(most_.molecule) + " is " +
-                              std::to_string(most_.distance) + " from where " + most_.name +
+        throw ErrorEverywhere("an atom of " + most_.whose + " is " + std::to_string(most_.distance) + " from where " +
+                              most_.name +
                               " has it, more than a tenth of its shortest distance: another shape, another order of "
                               "atoms, or the mirror image; rigid without a file takes molecules as they stand");
 }
@@ -178,7 +228,7 @@ std::vector<BodyAtom> Bodies::select(int groupbit, const std::vector<int> &which
     const std::vector<Group> groups = group(parts);
     std::vector<Fit> fits(groups.size());
     for (std::size_t t = 0; t < templates_.size(); ++t) try_template(t, groups, fits);
-    if (as_they_stand_)
+    if (as_they_stand_ || !lists_.empty())
         while (adopt_next(selected_ ? too_far : same_shape, groups, fits))
             try_template(templates_.size() - 1, groups, fits);
     selected_ = true;
@@ -187,7 +237,10 @@ std::vector<BodyAtom> Bodies::select(int groupbit, const std::vector<int> &which
         if (fits[g].best < 0) continue;
         const Points &shape = templates_[fits[g].best].at;
         for (std::size_t k = 0; k < shape.size(); ++k)
-            bodies.push_back({groups[g].first->tag, groups[g].first[k].tag, {shape[k][0], shape[k][1], shape[k][2]}});
+            bodies.push_back({groups[g].first->body,
+                              groups[g].first->tag,
+                              groups[g].first[k].tag,
+                              {shape[k][0], shape[k][1], shape[k][2]}});
     }
     return bodies;
 }

@@ -3,6 +3,7 @@
 #define HOLONOMIC_LAMMPS_FIX_BODIES_HPP
 
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "../plan/shape.hpp"
@@ -12,7 +13,8 @@
 
 namespace holonomic_lammps {
 
-/** Which molecules are rigid bodies: those that look like a molecule file's, or all as they stand. */
+/** Which molecules are rigid bodies: those that look like a molecule file's, or all as they stand; and bodies that a
+ * file lists by their atoms, which they may share. */
 class Bodies : protected LAMMPS_NS::Pointers {
 public:
     explicit Bodies(LAMMPS_NS::LAMMPS *lmp) : Pointers(lmp) {}
@@ -23,11 +25,16 @@ public:
     /** So are all others of the group, with the shapes that they have when they are first selected. */
     void take_as_they_stand();
 
-    bool empty() const { return templates_.empty() && !as_they_stand_; }
+    /** Bodies by their atoms, one a line: its number, a type that means nothing, its atoms (as fix poems reads them).
+     * They have the shapes that they have when they are first selected. Collective. */
+    void add_list(const char *file);
+
+    bool empty() const { return templates_.empty() && !as_they_stand_ && lists_.empty(); }
 
     /**
      * Of some atoms those of the group's molecules that have the atoms of a template, type by type in the order of IDs;
-     * of several such templates that which fits best. Collective. Throws ErrorEverywhere where none fits.
+     * of several such templates that which fits best; and listed bodies. Collective. Throws ErrorEverywhere where none
+     * fits, or an atom of a list is missing.
      */
     std::vector<BodyAtom> select(int groupbit, const std::vector<int> &which);
 
@@ -35,8 +42,8 @@ public:
     struct Displacement {
         double part = 0; /**< of the template's shortest distance */
         double distance = 0;
-        Tag molecule = 0;
-        std::string name; /**< of the template */
+        std::string whose; /**< "molecule 3" */
+        std::string name;  /**< of the template */
     };
     /** The largest of those last selected, on all ranks. */
     const Displacement &most_displaced() const { return most_; }
@@ -56,8 +63,18 @@ private:
     bool adopt_next(double within, const std::vector<Group> &groups, const std::vector<Fit> &fits);
     void check(const std::vector<Group> &groups, const std::vector<Fit> &fits);
     void needs_molecule_ids() const;
+    bool stands(const Group &group) const;
+    std::string words(Tag name) const;
 
     std::vector<Template> templates_;
+    /** A body of a list. Its name is above all molecule IDs. */
+    struct Listed {
+        std::size_t size;
+        std::string words;
+    };
+    static constexpr Tag first_name = Tag(1) << 40;
+    std::vector<Listed> lists_;
+    std::unordered_map<Tag, std::vector<Tag>> listed_;  // by atom: the names of its bodies
     bool as_they_stand_ = false, selected_ = false;
     Displacement most_;
 };

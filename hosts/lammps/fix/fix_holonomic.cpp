@@ -24,7 +24,8 @@ FixHolonomic::FixHolonomic(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, a
     if (atom->molecular == Atom::TEMPLATE)
         error->all(FLERR, "Fix holonomic: the atom style must have bonds of its own, not from molecule templates"s);
     read_options(narg, arg, selection_.read(narg, arg, 3));
-    if (selection_.empty()) error->all(FLERR, "Illegal fix holonomic command: nothing is selected (b, t, m or rigid)"s);
+    if (selection_.empty())
+        error->all(FLERR, "Illegal fix holonomic command: nothing is selected (b, t, m, rigid or bodies)"s);
 
     virial_global_flag = virial_peratom_flag = 1;
     thermo_virial = 1;
@@ -72,7 +73,7 @@ FixHolonomic::~FixHolonomic() {
 }
 
 static bool is_keyword(const char *word) {
-    for (const char *keyword : {"fixed", "forces", "tensions", "divide", "rigid"})
+    for (const char *keyword : {"fixed", "forces", "tensions", "divide", "rigid", "bodies", "tolerance"})
         if (strcmp(word, keyword) == 0) return true;
     return false;
 }
@@ -97,6 +98,12 @@ void FixHolonomic::read_options(int narg, char **arg, int first) {
         } else if (strcmp(arg[k], "divide") == 0) {
             divide_ = utils::inumeric(FLERR, arg[k + 1], false, lmp);
             if (divide_ < 0) error->all(FLERR, "Fix holonomic: divide needs a number of atoms, or 0"s);
+        } else if (strcmp(arg[k], "tolerance") == 0) {
+            tolerance_ = utils::numeric(FLERR, arg[k + 1], false, lmp);
+            if (!(tolerance_ >= 0 && tolerance_ <= 0.01))
+                error->all(FLERR, "Fix holonomic: tolerance needs a part of a length, from 0 to 0.01"s);
+        } else if (strcmp(arg[k], "bodies") == 0) {
+            guarded([&] { selection_.bodies.add_list(arg[k + 1]); });
         } else if (strcmp(arg[k], "rigid") == 0) {
             guarded([&] { selection_.bodies.add_file(arg[k + 1]); });
         } else {

@@ -71,6 +71,7 @@ private:
     void check_other_fixes();
     void find_molecules();
     void tell_displacement();
+    void tell_adjustment();
     bool renew_molecules(const std::vector<int> &changed, bool other_atoms);
     holonomic_lammps::Registry register_molecules(const std::vector<int> &which);
     void take_memberships(const std::vector<int> &which);
@@ -158,8 +159,10 @@ private:
     double last_box_[6] = {0};   // at the end of that step
     bool reruns_ = false;
 
-    int max_rows_ = 0;  // of array_local
-    double told_ = 0;   // of the bodies' displacements, the part of the shortest distance that a warning has named
+    int max_rows_ = 0;            // of array_local
+    double tolerance_ = 1e-3;     // by which part lengths that depend on each other may be adjusted
+    double told_adjustment_ = 0;  // of those, the part that a warning has named
+    double told_ = 0;  // of the bodies' displacements, the part of the shortest distance that a warning has named
 };
 
 }  // namespace LAMMPS_NS

@@ -15,7 +15,8 @@ using namespace holonomic_lammps;
 
 Registry FixHolonomic::register_molecules(const std::vector<int> &which) {
     const std::vector<RigidBond> bonds = selection_.select(groupbit, atoms_, which);
-    return Registry(world, bonds, selection_.bodies.select(groupbit, which), domain->dimension, size_to_divide());
+    return Registry(world, bonds, selection_.bodies.select(groupbit, which), domain->dimension, size_to_divide(),
+                    tolerance_);
 }
 
 void FixHolonomic::take_memberships(const std::vector<int> &which) {
@@ -37,16 +38,30 @@ void FixHolonomic::find_molecules() {
         *plan_ = Plan(world);
     });
     tell_displacement();
+    tell_adjustment();
 }
 
 /** Once, and again if it has become more. */
+void FixHolonomic::tell_adjustment() {
+    const Registry::Adjusted &most = registry_.most_adjusted();
+    if (!(most.part > 1e-6 && most.part > 1.001 * told_adjustment_)) return;
+    told_adjustment_ = most.part;
+    if (comm->me == 0)
+        error->warning(FLERR,
+                       "Fix holonomic: bonds and angles that depend on each other do not fit to the last digit: "
+                       "distances are adjusted in the least way, that of atoms " +
+                           std::to_string(most.from) + " and " + std::to_string(most.to) + " most, by " +
+                           std::to_string(100 * most.part) + " per cent");
+}
+
+/** Likewise. */
 void FixHolonomic::tell_displacement() {
     const Bodies::Displacement &most = selection_.bodies.most_displaced();
     if (!(most.part > Bodies::unremarkable && most.part > 1.001 * told_)) return;
     told_ = most.part;
     if (comm->me == 0)
-        error->warning(FLERR, "Fix holonomic: an atom of molecule " + std::to_string(most.molecule) + " is " +
-                                  std::to_string(most.distance) + " from where " + most.name +
+        error->warning(FLERR, "Fix holonomic: an atom of " + most.whose + " is " + std::to_string(most.distance) +
+                                  " from where " + most.name +
                                   " has it, the largest displacement: it is moved there before the run");
 }
 

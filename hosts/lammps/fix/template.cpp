@@ -8,16 +8,13 @@
 
 namespace holonomic_lammps {
 
-namespace {
-
-/** The file's text on every rank. */
-std::string text_of(MPI_Comm world, const std::string &file) {
+std::string text_of(MPI_Comm world, const std::string &file, const std::string &what) {
     std::string text, trouble;
     if (rank_of(world) == 0) {
         std::ifstream in(file);
         std::ostringstream all;
         all << in.rdbuf();
-        if (!in) trouble = "the molecule file " + file + " can't be read";
+        if (!in) trouble = "the " + what + " " + file + " can't be read";
         text = all.str();
     }
     throw_together(world, trouble);
@@ -28,10 +25,8 @@ std::string text_of(MPI_Comm world, const std::string &file) {
     return text;
 }
 
-}  // namespace
-
 Template read_template(MPI_Comm world, const std::string &file) {
-    std::istringstream lines(text_of(world, file));
+    std::istringstream lines(text_of(world, file, "molecule file"));
     const auto wrong = [&](const std::string &what) { return ErrorEverywhere("molecule file " + file + ": " + what); };
     Template molecule;
     molecule.name = "the file " + file;

@@ -46,14 +46,19 @@ inline std::unordered_set<Tag> everywhere(MPI_Comm world, const std::vector<Tag>
 /** Of a question that is a tag. */
 inline Tag itself(Tag tag) { return tag; }
 
+/** A rigid body that an atom belongs to, and where it is in any frame of the body's own. */
+struct InBody {
+    Tag body;
+    double at[3];
+};
+
 /** An atom, as its bookkeeper knows it. */
 struct Node {
     Tag tag;
     Tag component;               /**< the lowest tag of all that hang together */
     std::vector<Tag> neighbours; /**< atoms that it is bonded to */
     std::vector<double> lengths; /**< of these bonds */
-    Tag body = 0;                /**< that it belongs to; 0: none */
-    double at[3] = {0, 0, 0};    /**< where in the body */
+    std::vector<InBody> bodies;  /**< several where they share the atom */
 };
 
 /**

@@ -51,16 +51,16 @@ void throw_together(MPI_Comm world, const std::string &message) {
 }
 
 Registry::Registry(MPI_Comm world, const std::vector<RigidBond> &bonds, const std::vector<BodyAtom> &bodies,
-                   int dimensions, std::int64_t divide)
+                   int dimensions, std::int64_t divide, double tolerance)
     : world_(world), n_ranks_(size_of(world)), divide_(divide) {
     std::vector<Node> nodes = collect(bonds, bodies);
     find_components(world, nodes);
-    build(nodes, dimensions);
+    build(nodes, dimensions, tolerance);
     add_up();
 }
 
 bool Registry::divides(const Shape &shape) const {
-    return divide_ > 0 && shape.n_atoms >= divide_ && !shape.rigid && shape.bodies.empty();
+    return divide_ > 0 && shape.n_atoms >= divide_ && !shape.dependent() && shape.bodies.empty();
 }
 
 /** What there is on all ranks. */
@@ -78,9 +78,17 @@ void Registry::add_up() {
     n_bonds_ = sums[2];
     n_bodies_ = sums[3];
     n_divided_ = sums[4];
+    struct {
+        double part;
+        int rank;
+    } worst = {adjusted_.part, rank_of(world_)};
+    MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_DOUBLE_INT, MPI_MAXLOC, world_);
+    Tag ends[2] = {adjusted_.from, adjusted_.to};
+    MPI_Bcast(ends, 2, MPI_INT64_T, worst.rank, world_);
+    adjusted_ = {worst.part, ends[0], ends[1]};
 }
 
-/** Nodes whose books are kept here, with all their bonds, each once. A body is tied to the atom that it is named by. */
+/** Nodes whose books are kept here, with all their bonds, each once. A body's atoms are tied to one of them. */
 std::vector<Node> Registry::collect(const std::vector<RigidBond> &bonds, const std::vector<BodyAtom> &bodies) const {
     Outgoing<RigidBond> outgoing(n_ranks_);
     const auto tell = [&](Tag from, Tag to, double length) {
@@ -91,7 +99,7 @@ std::vector<Node> Registry::collect(const std::vector<RigidBond> &bonds, const s
     Outgoing<BodyAtom> of_bodies(n_ranks_);
     for (const BodyAtom &part : bodies) {
         of_bodies[bookkeeper(part.atom, n_ranks_)].push_back(part);
-        if (part.atom != part.body) tell(part.body, part.atom, no_distance);
+        if (part.atom != part.first) tell(part.first, part.atom, no_distance);
     }
     std::vector<RigidBond> known = route(world_, outgoing).items;
     std::sort(known.begin(), known.end(), [](const RigidBond &a, const RigidBond &b) {
@@ -103,35 +111,36 @@ std::vector<Node> Registry::collect(const std::vector<RigidBond> &bonds, const s
         const RigidBond &bond = known[k];
         if (bond.from == bond.to) trouble = "a bond of atom " + std::to_string(bond.from) + " with itself";
         if (k > 0 && known[k - 1].from == bond.from && known[k - 1].to == bond.to) {
-            if (known[k - 1].length != no_distance && known[k - 1].length != bond.length)
+            // An angle may give the distance that a bond or another angle gives, to rounding.
+            if (known[k - 1].length != no_distance && bond.length - known[k - 1].length > 1e-9 * bond.length)
                 trouble = "atoms " + std::to_string(bond.from) + " and " + std::to_string(bond.to) +
                           " are to be at two distances, " + std::to_string(known[k - 1].length) + " and " +
                           std::to_string(bond.length);
             continue;
         }
-        if (nodes.empty() || nodes.back().tag != bond.from) nodes.push_back({bond.from, bond.from, {}, {}, 0, {}});
+        if (nodes.empty() || nodes.back().tag != bond.from) nodes.push_back({bond.from, bond.from, {}, {}, {}});
         nodes.back().neighbours.push_back(bond.to);
         nodes.back().lengths.push_back(bond.length);
     }
     for (const BodyAtom &part : route(world_, of_bodies).items) {
         const auto node =
             std::lower_bound(nodes.begin(), nodes.end(), part.atom, [](const Node &n, Tag tag) { return n.tag < tag; });
-        if (node->body != 0) trouble = "atom " + std::to_string(part.atom) + " is in two rigid bodies";
-        node->body = part.body;
-        std::copy(part.at, part.at + 3, node->at);
+        for (const InBody &other : node->bodies)
+            if (other.body == part.body) trouble = "atom " + std::to_string(part.atom) + " is twice in a rigid body";
+        node->bodies.push_back({part.body, {part.at[0], part.at[1], part.at[2]}});
     }
     throw_together(world_, trouble);
     return nodes;
 }
 
 /** Sends each bond to the bookkeeper of its molecule, who makes the shape and tells the bookkeepers of its atoms. */
-void Registry::build(const std::vector<Node> &nodes, int dimensions) {
+void Registry::build(const std::vector<Node> &nodes, int dimensions, double tolerance) {
     Outgoing<Entry> outgoing(n_ranks_);
     Outgoing<Part> of_bodies(n_ranks_);
     for (const Node &node : nodes) {
-        if (node.body != 0)
+        for (const InBody &in : node.bodies)
             of_bodies[bookkeeper(node.component, n_ranks_)].push_back(
-                {node.component, {node.body, node.tag, {node.at[0], node.at[1], node.at[2]}}});
+                {node.component, {in.body, node.tag, node.tag, {in.at[0], in.at[1], in.at[2]}}});
         for (std::size_t k = 0; k < node.neighbours.size(); ++k)
             if (node.tag < node.neighbours[k])
                 outgoing[bookkeeper(node.component, n_ranks_)].push_back(
@@ -151,18 +160,22 @@ void Registry::build(const std::vector<Node> &nodes, int dimensions) {
         const Tag molecule = entries[begin].molecule;
         const auto parts = bodies.find(molecule);
         Shape found = shape_of(bonds, parts == bodies.end() ? std::vector<BodyAtom>() : parts->second, tags);
+        found.tolerance = tolerance;
         const auto before = examined.find(found);
         if (before != examined.end()) {
             found = before->second;
         } else {
             const Shape key = found;
-            examine(found, dimensions);
+            const Adjustment adjustment = examine(found, dimensions);
+            if (adjustment.part > adjusted_.part)
+                adjusted_ = {adjustment.part, tags[adjustment.places[0]], tags[adjustment.places[1]]};
             examined[key] = found;
         }
         const Shape &shape = molecules_[molecule] = found;
-        std::vector<double> taken(tags.size(), shape.rigid ? static_cast<double>(shape.taken) / shape.n_atoms : 0);
+        const bool evenly = shape.dependent();
+        std::vector<double> taken(tags.size(), evenly ? static_cast<double>(shape.taken) / shape.n_atoms : 0);
         for (const auto &pair : shape.pairs)
-            for (int place : pair) taken[place] += shape.rigid ? 0 : 0.5;
+            for (int place : pair) taken[place] += evenly ? 0 : 0.5;
         const bool in_parts = divides(shape);
         for (int place = 0; place < shape.n_atoms; ++place)
             notes[bookkeeper(tags[place], n_ranks_)].push_back(
@@ -210,6 +223,7 @@ bool Registry::replace(const std::unordered_set<Tag> &gone, Registry come) {
     molecules_.merge(come.molecules_);
     memberships_.merge(come.memberships_);
     partners_.merge(come.partners_);
+    if (come.adjusted_.part > adjusted_.part) adjusted_ = come.adjusted_;
     add_up();
     return come.n_divided_ > 0 || n_divided_ < n_divided;
 }

@@ -36,12 +36,14 @@ public:
      * Takes the bonds and rigid bodies that each rank knows; a bond that several ranks or both of its atoms report
      * counts once. Bonds within a body are held by it. Collective.
      * @param dimensions  2 or 3, for the degrees of freedom
-     * @param divide  molecules of at least as many atoms, without rigid parts, are divided among the ranks; 0: none
-     * Throws ErrorEverywhere if a bond is given with two lengths or joins an atom with itself, or an atom is in two
-     * bodies.
+     * @param divide  molecules of at least as many atoms, whose distances do not depend on each other and which have no
+     * bodies, are divided among the ranks; 0: none
+     * @param tolerance  by which part lengths of distances that depend on each other may be adjusted
+     * Throws ErrorEverywhere if a bond is given with two lengths or joins an atom with itself, or an atom is twice in a
+     * body.
      */
     Registry(MPI_Comm world, const std::vector<RigidBond> &bonds, const std::vector<BodyAtom> &bodies = {},
-             int dimensions = 3, std::int64_t divide = 0);
+             int dimensions = 3, std::int64_t divide = 0, double tolerance = 1e-3);
 
     /** Of the molecules whose books are kept here, those of which atoms are missing. Collective.
      * @param members  of all atoms that there are, each on one rank */
@@ -67,17 +69,25 @@ public:
     std::int64_t n_bonds() const { return n_bonds_; }         /**< on all ranks */
     std::int64_t n_atoms() const { return n_atoms_; }         /**< on all ranks */
     std::int64_t n_bodies() const { return n_bodies_; }       /**< on all ranks, those of the shapes */
+
+    /** The length that has been adjusted most of those that depend on each other, when these molecules were found. */
+    struct Adjusted {
+        double part = 0; /**< of the length */
+        Tag from = 0, to = 0;
+    };
+    const Adjusted &most_adjusted() const { return adjusted_; } /**< on all ranks */
     bool knows(Tag molecule) const { return molecules_.count(molecule) != 0; }
 
 private:
     std::vector<Node> collect(const std::vector<RigidBond> &bonds, const std::vector<BodyAtom> &bodies) const;
-    void build(const std::vector<Node> &nodes, int dimensions);
+    void build(const std::vector<Node> &nodes, int dimensions, double tolerance);
     void add_up();
     bool divides(const Shape &shape) const;
 
     MPI_Comm world_ = MPI_COMM_NULL;
     int n_ranks_ = 0;
     std::int64_t divide_ = 0;
+    Adjusted adjusted_;
     std::int64_t n_molecules_ = 0, n_bonds_ = 0, n_atoms_ = 0, n_bodies_ = 0, n_divided_ = 0;
     std::unordered_map<Tag, Shape> molecules_;                // those whose books are kept here
     std::unordered_map<Tag, Membership> memberships_;         // likewise, by atom

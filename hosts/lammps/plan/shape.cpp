@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <tuple>
 
 #include "lines.hpp"
@@ -55,18 +56,47 @@ std::vector<int> along(const Neighbours &neighbours) {
 
 /** A body holds what is in it. */
 void drop_pairs_within_bodies(Shape &shape) {
-    std::vector<int> body_of(shape.n_atoms, -1);
+    std::vector<std::vector<int>> bodies_of(shape.n_atoms);  // ascending
     for (std::size_t b = 0; b < shape.bodies.size(); ++b)
-        for (int place : shape.bodies[b].places) body_of[place] = static_cast<int>(b);
+        for (int place : shape.bodies[b].places) bodies_of[place].push_back(static_cast<int>(b));
     std::size_t n_kept = 0;
     for (std::size_t k = 0; k < shape.pairs.size(); ++k) {
         const auto pair = shape.pairs[k];
-        if (body_of[pair[0]] >= 0 && body_of[pair[0]] == body_of[pair[1]]) continue;
+        const std::vector<int> &a = bodies_of[pair[0]], &b = bodies_of[pair[1]];
+        if (std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end()) continue;
         shape.pairs[n_kept] = pair;
         shape.lengths[n_kept++] = shape.lengths[k];
     }
     shape.pairs.resize(n_kept);
     shape.lengths.resize(n_kept);
+}
+
+/** Whether bonds and bodies make no cycle: then no bond depends on others. */
+bool is_forest(const Shape &shape) {
+    std::vector<int> root(shape.n_atoms);
+    std::iota(root.begin(), root.end(), 0);
+    const auto find = [&](int place) {
+        while (root[place] != place) place = root[place] = root[root[place]];
+        return place;
+    };
+    const auto join_parts = [&](int a, int b) {
+        a = find(a), b = find(b);
+        root[b] = a;
+        return a != b;
+    };
+    bool forest = true;
+    for (const Body &body : shape.bodies)
+        for (std::size_t k = 1; k < body.places.size(); ++k) forest &= join_parts(body.places[0], body.places[k]);
+    for (const auto &pair : shape.pairs) forest &= join_parts(pair[0], pair[1]);
+    return forest;
+}
+
+/** Atoms on a line become bodies where nothing else depends on anything, as the kernels for bodies are fast. */
+void take_lines(Shape &shape) {
+    Shape with_lines = shape;
+    if (!find_lines(with_lines)) return;
+    drop_pairs_within_bodies(with_lines);
+    if (!shape.bodies.empty() || is_forest(with_lines)) shape = with_lines;
 }
 
 void sort_bonds(Shape &shape) {
@@ -107,8 +137,12 @@ Shape shape_of(const std::vector<RigidBond> &bonds, const std::vector<BodyAtom> 
     };
     Shape shape;
     shape.n_atoms = static_cast<int>(tags.size());
+    // However they have come here: molecules alike have one shape.
+    std::vector<BodyAtom> parts = body_atoms;
+    std::sort(parts.begin(), parts.end(),
+              [](const BodyAtom &a, const BodyAtom &b) { return std::tie(a.body, a.atom) < std::tie(b.body, b.atom); });
     std::map<Tag, Body> bodies;
-    for (const BodyAtom &atom : body_atoms) {
+    for (const BodyAtom &atom : parts) {
         Body &body = bodies[atom.body];
         body.places.push_back(place(atom.atom));
         body.at.push_back({atom.at[0], atom.at[1], atom.at[2]});
@@ -121,7 +155,7 @@ Shape shape_of(const std::vector<RigidBond> &bonds, const std::vector<BodyAtom> 
     }
     if (!shape.bodies.empty()) drop_pairs_within_bodies(shape);
     const bool may_have_cycles = !shape.bodies.empty() || shape.pairs.size() >= static_cast<std::size_t>(shape.n_atoms);
-    if (may_have_cycles && find_lines(shape)) drop_pairs_within_bodies(shape);
+    if (may_have_cycles) take_lines(shape);
     const Neighbours neighbours = neighbours_of(shape);
     shape.linear = shape.bodies.empty() && is_linear(neighbours, shape.pairs.size());
     if (shape.linear) {
@@ -157,7 +191,7 @@ Walk walk(const Shape &shape) {
 void write(const Shape &shape, std::vector<double> &numbers) {
     const auto add = [&](double x) { numbers.push_back(x); };
     for (double x : {static_cast<double>(shape.n_atoms), static_cast<double>(shape.linear),
-                     static_cast<double>(shape.rigid), static_cast<double>(shape.taken),
+                     static_cast<double>(shape.rigid), static_cast<double>(shape.taken), shape.tolerance,
                      static_cast<double>(shape.pairs.size()), static_cast<double>(shape.bodies.size())})
         add(x);
     for (std::size_t b = 0; b < shape.pairs.size(); ++b)
@@ -180,6 +214,7 @@ Shape read(const double *&number) {
     shape.linear = integer() != 0;
     shape.rigid = integer() != 0;
     shape.taken = integer();
+    shape.tolerance = *number++;
     const int n_bonds = integer();
     shape.bodies.resize(integer());
     for (int b = 0; b < n_bonds; ++b) {

@@ -3,7 +3,7 @@
 # One test: runs LAMMPS with the fix and compares numbers, not exit codes.
 #
 #   case.sh NAME ARG...      with LMP (the executable), PLUGIN (to be loaded; empty: LMP knows the fix), SCENE (make_scene),
-#                            MPIRUN and INPUTS in the environment
+#                            MPIRUN, PYTHON and INPUTS in the environment
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 # lammps RANKS OUTPUT INPUT VARIABLE VALUE...
@@ -172,5 +172,5 @@ shift
 case $name in
     rattle | ranks | divided | nve | npt | bent) "$name" "$@" ;;
     long_npt) . "$(dirname "${BASH_SOURCE[0]}")/more_cases.sh" && . "$(dirname "${BASH_SOURCE[0]}")/long_npt.sh" && "$name" "$@" ;;
-    *) . "$(dirname "${BASH_SOURCE[0]}")/more_cases.sh" && "$name" "$@" ;;
+    *) . "$(dirname "${BASH_SOURCE[0]}")/more_cases.sh" && . "$(dirname "${BASH_SOURCE[0]}")/angle_cases.sh" && "$name" "$@" ;;
 esac

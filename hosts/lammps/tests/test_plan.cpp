@@ -108,7 +108,7 @@ void test_bodies() {
     if (me == n_ranks - 1) {
         bonds.push_back({12, 4, 1.0});
         bonds.push_back({10, 11, 7.0});
-        bodies = {{10, 10, {0, 0, 0}}, {10, 12, {0, 2, 0}}, {10, 11, {1, 0, 0}}};
+        bodies = {{10, 10, 10, {0, 0, 0}}, {10, 10, 12, {0, 2, 0}}, {10, 10, 11, {1, 0, 0}}};
     }
     const Registry registry(MPI_COMM_WORLD, bonds, bodies);
     CHECK(registry.n_molecules() == 1 && registry.n_atoms() == 7);
@@ -129,6 +129,65 @@ void test_bodies() {
     CHECK(walk(shape).size() == 6);
 }
 
+/** Two bodies that share an atom are one molecule, which has twelve freedoms less three; a bond within one of them is
+ * dropped, one between them is not. */
+void test_shared_atom() {
+    std::vector<BodyAtom> bodies;
+    std::vector<RigidBond> bonds;
+    const double at[3][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    if (me == 0)
+        for (int k = 0; k < 3; ++k) bodies.push_back({100, 1, k + 1, {at[k][0], at[k][1], at[k][2]}});
+    if (me == n_ranks - 1) {
+        for (int k = 0; k < 3; ++k) bodies.push_back({101, 1, k == 0 ? 1 : k + 3, {at[k][0], at[k][1], at[k][2]}});
+        bonds = {{1, 4, 1.0}, {2, 4, 1.25}};
+    }
+    const Registry registry(MPI_COMM_WORLD, bonds, bodies);
+    CHECK(registry.n_molecules() == 1 && registry.n_atoms() == 5);
+    CHECK(registry.n_bonds() == 1 && registry.n_bodies() == 2);
+    const Shape shape = registry.shapes({1})[0];
+    CHECK(shape.rigid && shape.taken == 15 - (12 - 3 - 1));
+    for (const Body &body : shape.bodies)
+        CHECK(body.places == std::vector<int>({0, 1, 2}) || body.places == std::vector<int>({0, 3, 4}));
+    CHECK(walk(shape).size() == 4);
+}
+
+/** Ethane by all bonds and angles, whose lengths do not quite fit: seven freedoms; what has been adjusted is told, and
+ * the molecule is not divided. */
+void test_dependent() {
+    std::vector<RigidBond> bonds;
+    const double third = std::acos(-1.0) * 2 / 3, h = 1.09;
+    double r[8][3] = {{0, 0, 0}, {1.54, 0, 0}};
+    for (int k = 0; k < 6; ++k) {
+        double *x = r[2 + k];
+        const double turn = third * k + (k < 3 ? 0 : 1);
+        x[0] = k < 3 ? -h / 3 : 1.54 + h / 3, x[1] = h * std::sqrt(8.0) / 3 * std::cos(turn),
+        x[2] = h * std::sqrt(8.0) / 3 * std::sin(turn);
+    }
+    const auto hold = [&](int i, int j, double factor) {
+        double square = 0;
+        for (int c = 0; c < 3; ++c) square += std::pow(r[i][c] - r[j][c], 2);
+        bonds.push_back({i + 1, j + 1, factor * std::sqrt(square)});
+    };
+    for (int end = 0; end < 2 && me == 0; ++end)
+        for (int k = 2 + 3 * end; k < 5 + 3 * end; ++k) {
+            hold(end, k, 1), hold(1 - end, k, k == 2 ? 1.0003 : 1);
+            for (int j = 2 + 3 * end; j < k; ++j) hold(j, k, 1);
+        }
+    if (me == 0) hold(0, 1, 1);
+    const Registry registry(MPI_COMM_WORLD, bonds, {}, 3, 4);
+    CHECK(registry.n_molecules() == 1 && registry.n_bonds() == 19 && registry.n_divided() == 0);
+    const Registry::Adjusted &most = registry.most_adjusted();
+    CHECK(most.part > 1e-5 && most.part < 3e-4 && most.from > 0 && most.to > most.from);
+    const Shape shape = registry.shapes({1})[0];
+    CHECK(shape.dependent() && shape.taken == 24 - 7);
+    double taken = 0;
+    for (const Membership &member : registry.memberships({1, 2, 3, 4, 5, 6, 7, 8})) taken += member.taken;
+    CHECK(std::fabs(taken - 17) < 1e-13);
+    // Nor is anything adjusted beyond the tolerance that is asked for.
+    const Registry strict(MPI_COMM_WORLD, bonds, {}, 3, 0, 1e-6);
+    CHECK(strict.most_adjusted().part == 0);
+}
+
 template <class Function>
 void refuses(const char *words, Function function) {
     std::string said;
@@ -147,8 +206,8 @@ void test_errors() {
     if (me == 0) bonds = {{5, 5, 1.0}};
     if (me != 0) bonds.clear();
     std::vector<BodyAtom> twice;
-    if (me == 0) twice = {{1, 1, {0, 0, 0}}, {1, 2, {1, 0, 0}}, {3, 3, {0, 0, 0}}, {3, 2, {1, 0, 0}}};
-    refuses("atom 2 is in two rigid bodies", [&] { Registry(MPI_COMM_WORLD, {}, twice); });
+    if (me == 0) twice = {{1, 1, 1, {0, 0, 0}}, {1, 1, 2, {1, 0, 0}}, {1, 1, 2, {1, 0, 0}}};
+    refuses("atom 2 is twice in a rigid body", [&] { Registry(MPI_COMM_WORLD, {}, twice); });
     refuses("atom 5 with itself", [&] { Registry(MPI_COMM_WORLD, bonds); });
     if (me == 0) bonds = {{3, 4, 1.0}, {4, 5, 1.0}};
     const Registry registry(MPI_COMM_WORLD, bonds);
@@ -206,6 +265,8 @@ int main(int argc, char **argv) {
     test_changes();
     test_balance();
     test_bodies();
+    test_shared_atom();
+    test_dependent();
     test_errors();
     test_messages();
     if (me == 0) std::printf("%d checks on rank 0 of %d\n", n_checks, n_ranks);
