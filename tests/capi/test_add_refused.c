@@ -21,6 +21,26 @@ static void assert_counts(const hol_chains *c, int64_t chains, int64_t bonds)
     assert_int_equal(hol_chains_n_bonds(c), bonds);
 }
 
+/** A length of zero takes another way, which has to look at the atoms, too. */
+static void atoms_are_looked_at_beside_a_length_of_zero(void **state)
+{
+    (void)state;
+    hol_chains *c = make(10);
+    const double lengths[2] = {0, 1};
+    const int64_t wrong[][2] = {{2, 10}, {2, INT64_MAX}, {-1, 2}, {INT64_MIN, 2}};
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; ++i) {
+        const int64_t pairs[4] = {0, 1, wrong[i][0], wrong[i][1]}, images[6] = {0};
+        CHECK_FAILS(HOL_ERR_INDEX, hol_chains_add_bonds(c, 2, pairs, lengths));
+        CHECK_FAILS(HOL_ERR_INDEX, hol_chains_add_molecules(c, 1, 10, 0, 2, pairs, lengths));
+        assert_int_not_equal(hol_chains_add_bonds_with_images(c, 2, pairs, lengths, images), HOL_OK);
+    }
+    const int64_t itself[4] = {0, 1, 2, 2}, at_zero[4] = {3, 3, 0, 1};
+    CHECK_FAILS(HOL_ERR_VALUE, hol_chains_add_bonds(c, 2, itself, lengths));
+    CHECK_FAILS(HOL_ERR_VALUE, hol_chains_add_bonds(c, 2, at_zero, lengths));
+    assert_counts(c, 0, 0);
+    hol_chains_destroy(c);
+}
+
 static void add_refuses_wrong_arguments_and_adds_nothing(void **state)
 {
     (void)state;
@@ -276,6 +296,7 @@ static void wrong_lengths_and_masses_change_nothing(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(atoms_are_looked_at_beside_a_length_of_zero),
         cmocka_unit_test(add_refuses_wrong_arguments_and_adds_nothing),
         cmocka_unit_test(add_block_refuses_wrong_arguments_and_adds_nothing),
         cmocka_unit_test(wrong_lengths_and_masses_change_nothing),

@@ -111,7 +111,8 @@ void Chains::add_bonds(std::int64_t n_bonds, const std::int64_t *pairs, const do
 }
 
 void Chains::add_listed(const BondList &list, const double *lengths, std::int64_t n_lengths) {
-    if (std::count(lengths, lengths + n_lengths, 0.0) > 0) return add_with_bodies(list, lengths, n_lengths);
+    if (std::count(lengths, lengths + n_lengths, 0.0) > 0)
+        return add_with_bodies(checked(n_atoms_, list), lengths, n_lengths);
     try {
         const FoundMolecules found = find_molecules(masses_, n_atoms_, list);
         Batch batch(*this);

@@ -15,7 +15,8 @@ std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 using Numbers = std::vector<std::int32_t>;
 
-// Throws Error if a bond of the list makes no sense.
+}  // namespace
+
 const BondList &checked(std::int64_t n_atoms, const BondList &list) {
     for (std::int64_t e = 0; e < 2 * list.n_bonds; ++e) {
         const std::int64_t atom = list.pairs[e];
@@ -33,6 +34,8 @@ const BondList &checked(std::int64_t n_atoms, const BondList &list) {
     }
     return list;
 }
+
+namespace {
 
 // Sets of atoms that hold together. The least number stands for its set.
 class Sets {

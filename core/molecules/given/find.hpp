@@ -38,6 +38,9 @@ struct FoundMolecules {
     std::vector<std::int64_t> unconstrained_atoms;  // [][2]
 };
 
+// The list. Throws Error for numbers that are out of range and bonds of an atom with itself.
+const BondList &checked(std::int64_t n_atoms, const BondList &list);
+
 // O(n_bonds), and O(n_atoms) of very small constant if the list is long. Throws Error for numbers that are out of
 // range, bonds of an atom with itself, bonds that are given twice and parts of molecules with more bonds than freedoms.
 FoundMolecules find_molecules(const Masses &masses, std::int64_t n_atoms, const BondList &list);
