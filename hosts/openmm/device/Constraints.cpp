@@ -98,6 +98,7 @@ void DeviceConstraints::takeMolecules(const System &system, const std::vector<Mo
     std::vector<int> atomData;
     std::vector<double> parameterData;
     std::map<std::vector<double>, int> known;  // where molecules that are alike have their parameters
+    moleculeOf.assign(system.getNumParticles(), -1);
     std::vector<bool> isOnDevice(hol_chains_n_molecules(host.chains()), false);
     for (std::size_t kind = 0; kind < sorted.size(); ++kind) {
         const int rows = sorted[kind].kind.nAtoms + 1;
@@ -105,7 +106,7 @@ void DeviceConstraints::takeMolecules(const System &system, const std::vector<Mo
         for (std::size_t first = 0; first < molecules.size(); first += groupWidth) {
             groupData.push_back(mm_int2(static_cast<int>(kind), static_cast<int>(atomData.size())));
             atomData.resize(atomData.size() + rows * groupWidth, -1);
-            numbers.resize(numbers.size() + groupWidth, -1);
+            beginnings.resize(beginnings.size() + groupWidth, -1);
             int *const data = &atomData[groupData.back().y];
             for (int lane = 0; lane < groupWidth && first + lane < molecules.size(); ++lane) {
                 const Molecule &molecule = molecules[first + lane];
@@ -116,14 +117,15 @@ void DeviceConstraints::takeMolecules(const System &system, const std::vector<Mo
                 if (place.second) parameterData.insert(parameterData.end(), values.begin(), values.end());
                 for (int row = 0; row + 1 < rows; ++row) data[row * groupWidth + lane] = molecule.atoms[row];
                 data[(rows - 1) * groupWidth + lane] = place.first->second;
-                numbers[numbers.size() - groupWidth + lane] = molecule.number;
+                for (int atom : molecule.atoms) moleculeOf[atom] = molecule.number;
+                beginnings[beginnings.size() - groupWidth + lane] = molecule.atoms[0];
                 isOnDevice[molecule.number] = true;
             }
         }
     }
     for (std::size_t number = 0; number < isOnDevice.size(); ++number)
         if (!isOnDevice[number]) left.push_back(static_cast<std::int64_t>(number));
-    if (numbers.empty()) return;
+    if (beginnings.empty()) return;
     allocate(groupData, atomData, parameterData);
     // A kernel takes the registers of its largest molecule, so that the small ones, water above all, have one of their
     // own.
@@ -144,7 +146,7 @@ void DeviceConstraints::allocate(const std::vector<mm_int2> &groupData, const st
     parameters.initialize(context, static_cast<int>(parameterData.size()), doubles ? sizeof(double) : sizeof(float),
                           "holonomicParameters");
     parameters.upload(parameterData, true);
-    failures.initialize<int>(context, static_cast<int>(numbers.size()), "holonomicFailures");
+    failures.initialize<int>(context, static_cast<int>(beginnings.size()), "holonomicFailures");
     anyFailure.initialize<int>(context, 1, "holonomicAnyFailure");
     context.clearBuffer(failures);
     context.clearBuffer(anyFailure);
@@ -173,6 +175,8 @@ void DeviceConstraints::addLaunch(const std::vector<MoleculesOfKind> &sorted, st
 
 void DeviceConstraints::apply(bool toVelocities) {
     ContextSelector selector(context);
+    if (outsideOfSteps) check();  // a failure of the last steps is none of this call's
+    firstStep = std::min(firstStep, context.getStepCount());
     for (const Launch &launch : launches) {
         const ComputeKernel &kernel = launch.kernel(toVelocities);
         kernel->setArg(7, static_cast<int>(context.getStepCount() - firstStep) + 1);
@@ -181,11 +185,13 @@ void DeviceConstraints::apply(bool toVelocities) {
     if (outsideOfSteps && !launches.empty()) {
         int call;
         std::vector<std::int64_t> which;
-        for (int slot : failedSlots(call)) which.push_back(numbers[slot]);
+        for (int slot : failedSlots(call)) which.push_back(moleculeIn(slot));
         if (!which.empty()) solveOnHost(toVelocities, which);
     }
     if (!left.empty()) solveOnHost(toVelocities, left);
 }
+
+std::int64_t DeviceConstraints::moleculeIn(int slot) const { return moleculeOf[atomOf[beginnings[slot]]]; }
 
 std::vector<int> DeviceConstraints::failedSlots(int &firstCall) {
     std::vector<int> any(1), calls;
@@ -204,17 +210,16 @@ std::vector<int> DeviceConstraints::failedSlots(int &firstCall) {
 }
 
 void DeviceConstraints::check() {
-    if (numbers.empty()) return;
+    if (launches.empty()) return;
     ContextSelector selector(context);
     const long long since = firstStep;
     firstStep = context.getStepCount();
     int call;
     const std::vector<int> failed = failedSlots(call);
     if (failed.empty()) return;
-    const std::int64_t number = numbers[failed[0]];
     std::string words;
-    for (int place : atomsOf(host.chains(), number))
-        words += (words.empty() ? " " : ", ") + std::to_string(atomOf[place]);
+    for (int atom : atomsOf(host.chains(), moleculeIn(failed[0])))
+        words += (words.empty() ? " " : ", ") + std::to_string(atom);
     throw OpenMMException(
         "holonomic: the constraints of the molecule of atoms" + words + " could not be solved in step " +
         std::to_string(since + call) + ": the step is too long, or a coordinate is not finite" +
@@ -248,7 +253,7 @@ void DeviceConstraints::solveOnHost(bool toVelocities, const std::vector<std::in
         host.apply(r, moved, inverseMasses, 0);
         for (int i = 0; i < n; ++i) moved[i] -= before[i];
     }
-    // Nothing is changed of others, not even by a rounding. Molecules are known by the atoms that they began with.
+    // Nothing is changed of others, not even by a rounding.
     std::vector<bool> concerned(n, false);
     for (std::int64_t number : which)
         for (int atom : atomsOf(host.chains(), number)) concerned[atom] = true;

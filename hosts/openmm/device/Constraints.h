@@ -35,14 +35,18 @@ private:
                   const std::vector<double> &parameterData);
     // The molecules that failed in the first call in which one did, by their slots; forgets them.
     std::vector<int> failedSlots(int &firstCall);
+    // The molecule that is now where the one of the slot began.
+    std::int64_t moleculeIn(int slot) const;
     void solveOnHost(bool toVelocities, const std::vector<std::int64_t> &which);
 
     ComputeContext &context;
     HolonomicAlgorithm host;
     std::vector<double> inverseMasses;
-    std::vector<std::int64_t> left;     // molecules for the host
-    std::vector<std::int64_t> numbers;  // of the molecules on the device, by slot; -1: none
-    std::vector<int> atomOf;            // the atom that stands at each place of the device's arrays
+    // Molecules by the numbers that the library has given them.
+    std::vector<std::int64_t> left;        // for the host
+    std::vector<std::int64_t> moleculeOf;  // of each atom; of those that are not for the device -1
+    std::vector<int> beginnings;           // of the molecules on the device, by slot: a place in its arrays; -1: none
+    std::vector<int> atomOf;               // the atom that stands at each place of the device's arrays
     ComputeArray groups, atoms, parameters, failures, anyFailure;
     struct Launch {
         ComputeKernel positions, velocities;

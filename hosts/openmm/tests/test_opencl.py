@@ -5,8 +5,11 @@ Any OpenCL device will do, pocl on a CPU too. Ends with 77, and the reason, wher
 
 import copy
 import os
+import subprocess
 import sys
 import unittest
+
+os.environ.setdefault("POCL_MAX_PTHREAD_COUNT", "1")  # on busy processors, threads of pocl wait for each other most of the time
 
 import numpy as np
 import openmm as mm
@@ -16,7 +19,8 @@ from holonomic_openmm import add_holonomic, load
 from test_openmm import system_of
 from test_scenes import INTEGRATORS, charged, positions, velocities, worst
 
-PRECISIONS = {"double": 1e-14, "mixed": 1e-13, "single": 2e-6}  # and the error that coordinates of 0.3 nm leave to bonds
+# And the error of bonds: they end at coordinates of at most 1 nm, half a unit of the last place off, and the shortest is of 0.06 nm.
+PRECISIONS = {"double": 1e-14, "mixed": 1e-13, "single": 4e-6}
 
 
 def random_graph(rng, n, rings):
@@ -86,6 +90,36 @@ class Scene:
 SCENE = Scene()
 
 
+def box_of_molecules():
+    """Waters, chains, CO2 (for the host) and pairs of mirror images: OpenMM sorts molecules by their places in space every 250 steps."""
+    rng = np.random.default_rng(22)
+    corners = np.array([(0, 0, 0), (0.15, 0, 0), (0, 0.14, 0), (0, 0, 0.13), (0.05, 0.06, 0.16)])
+    molecules = [([16, 1, 1], np.array([(0, 0, 0), (0.1, 0, 0), (-0.033, 0.094, 0)]), [(0, 1), (0, 2), (1, 2)]),
+                 ([14] * 5, np.array([(0.12 * k, 0.05 * (k % 2), 0) for k in range(5)]), [(0, 1), (1, 2), (2, 3), (3, 4)]),
+                 ([16, 12, 16], np.array([(-0.116, 0, 0), (0, 0, 0), (0.116, 0, 0)]), [(0, 1), (1, 2), (0, 2)]),
+                 ([12] * 5, corners, [(i, j) for i in range(5) for j in range(i)]),
+                 ([12] * 5, corners * (1, 1, -1), [(i, j) for i in range(5) for j in range(i)])]
+    masses, r, bonds = [], [], []
+    for k, corner in enumerate(rng.permutation([(x, y, z) for x in range(6) for y in range(6) for z in range(6)])):
+        mass, places, pairs = molecules[k % 5]
+        first = len(r)
+        r += list(0.8 * corner + places)
+        masses += mass
+        bonds += [(first + i, first + j, float(np.linalg.norm(places[i] - places[j]))) for i, j in pairs]
+    system = charged(masses, [0.0] * len(masses))
+    force = system.getForce(0)
+    for i in range(len(masses)):
+        force.setParticleParameters(i, 0, 0.2, 0.3)
+    force.createExceptionsFromBonds([(i, j) for i, j, _ in bonds], 0, 0)
+    force.setNonbondedMethod(mm.NonbondedForce.CutoffPeriodic)
+    force.setCutoffDistance(0.9)
+    system.setDefaultPeriodicBoxVectors((4.8, 0, 0), (0, 4.8, 0), (0, 0, 4.8))
+    for bond in bonds:
+        system.addConstraint(*bond)
+    add_holonomic(system)
+    return system, np.array(r), rng.normal(size=(len(r), 3)), bonds
+
+
 def context_of(system, integrator, precision, r, v=None):
     """On OpenCL in a precision; with None on the platform Reference."""
     integrator.setConstraintTolerance(0.01)  # not looked at
@@ -129,22 +163,22 @@ class Steps(unittest.TestCase):
             context = context_of(SCENE.system(), mm.VerletIntegrator(0.001), precision, SCENE.r, SCENE.v)
             context.getIntegrator().step(100)
             ends[precision] = positions(context), velocities(context)
-        for precision, bound in ("double", 1e-10), ("mixed", 1e-6), ("single", 1e-4):  # forces of mixed are in floats
-            for one, other in zip(ends[precision], ends[None]):
-                np.testing.assert_allclose(one, other, atol=bound * max(1, np.abs(other).max()))
+        # Velocities are displacements over 0.001 ps. Of 100 roundings ten remain, as they come by chance; forces of mixed are in floats.
+        for precision, bound in ("double", 1e-11), ("mixed", 1e-7), ("single", 1e-5):
+            np.testing.assert_allclose(ends[precision][0], ends[None][0], atol=bound)
+            np.testing.assert_allclose(ends[precision][1], ends[None][1], atol=100 * bound)
 
-    def test_have_equal_bits_in_every_run(self):
-        for precision in PRECISIONS:
-            ends = []
-            for _ in range(2):
-                context = context_of(SCENE.system(), mm.VerletIntegrator(0.001), precision, SCENE.r, SCENE.v)
-                context.getIntegrator().step(100)
-                ends.append((positions(context), velocities(context)))
-            np.testing.assert_array_equal(ends[0], ends[1])
+    def test_have_equal_bits_with_any_number_of_threads(self):
+        def bits(threads):
+            return subprocess.run([sys.executable, "-W", "ignore", __file__, "bits"], env={**os.environ, "POCL_MAX_PTHREAD_COUNT": threads},
+                                  stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, check=True).stderr.split()  # to stdout OpenMM warns of pocl
+        once = bits("1")
+        self.assertEqual([len(one) for one in once], 3 * [2 * 2 * 3 * 8 * len(SCENE.r)])
+        self.assertEqual(once, bits("4"))
 
     def test_conserve_the_energy_as_on_the_platform_reference(self):
         reference = energies(context_of(SCENE.system(), mm.VerletIntegrator(0.001), None, SCENE.r, SCENE.v), 60, 50)
-        for precision, rounding in ("double", 1e-9), ("mixed", 1e-4), ("single", 2e-3):
+        for precision, rounding in ("double", 1e-9), ("mixed", 1e-6), ("single", 2e-4):  # 3000 of floats
             found = energies(context_of(SCENE.system(), mm.VerletIntegrator(0.001), precision, SCENE.r, SCENE.v), 60, 50)
             scale = np.abs(reference).max()
             self.assertLess(np.std(found), 1.05 * np.std(reference) + rounding * scale)
@@ -158,28 +192,7 @@ class Steps(unittest.TestCase):
                 self.assertLess(abs((r[i] - r[j]) @ (v[i] - v[j])), bound)
 
     def test_with_atoms_that_change_places(self):
-        """OpenMM sorts molecules by their places in space every 250 steps."""
-        rng = np.random.default_rng(22)
-        masses, r, bonds = [], [], []
-        water, chain = [(0, 0, 0), (0.1, 0, 0), (-0.033, 0.094, 0)], [(0.12 * k, 0.05 * (k % 2), 0) for k in range(5)]
-        for k, corner in enumerate(rng.permutation([(x, y, z) for x in range(6) for y in range(6) for z in range(6)])):
-            first = len(r)
-            r += list(0.8 * corner + np.array(water if k % 3 else chain))
-            masses += [16, 1, 1] if k % 3 else [14] * 5
-            pairs = [(0, 1), (0, 2), (1, 2)] if k % 3 else [(0, 1), (1, 2), (2, 3), (3, 4)]
-            bonds += [(first + i, first + j, float(np.linalg.norm(r[first + i] - r[first + j]))) for i, j in pairs]
-        system = charged(masses, [0.0] * len(masses))
-        force = system.getForce(0)
-        for i in range(len(masses)):
-            force.setParticleParameters(i, 0, 0.2, 0.3)
-        force.createExceptionsFromBonds([(i, j) for i, j, _ in bonds], 0, 0)
-        force.setNonbondedMethod(mm.NonbondedForce.CutoffPeriodic)
-        force.setCutoffDistance(0.9)
-        system.setDefaultPeriodicBoxVectors((4.8, 0, 0), (0, 4.8, 0), (0, 0, 4.8))
-        for bond in bonds:
-            system.addConstraint(*bond)
-        add_holonomic(system)
-        r, v = np.array(r), rng.normal(size=(len(r), 3))
+        system, r, v, bonds = box_of_molecules()
         ends = []
         for precision in (None, "double"):
             context = context_of(copy.deepcopy(system), mm.VerletIntegrator(0.001), precision, r, v)
@@ -196,6 +209,15 @@ class Contexts(unittest.TestCase):
             for off in (0.02, 0.12):  # from the second, a bond's length, the library must help
                 context = context_of(SCENE.system(), mm.VerletIntegrator(0.001), precision, SCENE.r + off * noise)
                 self.assertLess(worst(positions(context), SCENE.moving()), 2 * bound)
+
+    def test_crude_positions_of_atoms_that_have_changed_places(self):
+        system, r, v, bonds = box_of_molecules()
+        context = context_of(system, mm.VerletIntegrator(0.001), "double", r, v)
+        context.getIntegrator().step(300)
+        r = positions(context)
+        context.setPositions(r + 0.12 * np.random.default_rng(23).normal(size=r.shape))  # the library must help
+        context.applyConstraints(1e-3)
+        self.assertLess(worst(positions(context), bonds), 1e-13)
 
     def test_a_minimisation_ends_on_the_constraints(self):
         for precision, bound in PRECISIONS.items():
@@ -269,6 +291,36 @@ class Failures(unittest.TestCase):
         with self.assertRaisesRegex(mm.OpenMMException, "in step 4"):
             integrator.step(17)
 
+    def test_of_a_step_are_told_by_the_next_call_that_waits(self):
+        """And not forgotten for those that applyConstraints finds."""
+        integrator = mm.VerletIntegrator(0.001)
+        context = context_of(SCENE.system(), integrator, "mixed", SCENE.r, SCENE.v)
+        integrator.step(3)
+        v = velocities(context)
+        v[SCENE.bonds[0][0]] += (0, 0, 900)
+        context.setVelocities(v)
+        integrator.step(1)
+        crude = SCENE.r + 0.12 * np.random.default_rng(23).normal(size=SCENE.r.shape)
+        context.setPositions(crude)
+        with self.assertRaisesRegex(mm.OpenMMException, "atoms 0, 1, 2 could not be solved in step 4"):
+            context.applyConstraints(1e-3)
+        np.testing.assert_allclose(positions(context), crude, atol=1e-6)
+        context.applyConstraints(1e-3)
+        self.assertLess(worst(positions(context), SCENE.moving()), 2 * PRECISIONS["mixed"])
+
+    def test_after_the_count_of_steps_was_set_back(self):
+        integrator = mm.VerletIntegrator(0.001)
+        context = context_of(SCENE.system(), integrator, "mixed", SCENE.r, SCENE.v)
+        integrator.step(5)
+        context.getState(getEnergy=True)
+        context.setStepCount(4)
+        v = velocities(context)
+        v[SCENE.bonds[0][0]] += (0, 0, 900)
+        context.setVelocities(v)
+        integrator.step(1)
+        with self.assertRaisesRegex(mm.OpenMMException, r"atoms 0, 1, 2 could not be solved in step 5: [^;]*$"):
+            context.getState(getEnergy=True)
+
     def test_outside_of_a_step_are_told_at_once(self):
         context = context_of(SCENE.system(), mm.VerletIntegrator(0.001), "mixed", SCENE.r)
         r = SCENE.r.copy()
@@ -282,6 +334,13 @@ class Failures(unittest.TestCase):
         system.setConstraintParameters(0, 0, 1, 0.9)
         with self.assertRaisesRegex(mm.OpenMMException, "more than the two other sides of its triangle"):
             context_of(system, mm.VerletIntegrator(0.001), "mixed", SCENE.r)
+
+
+def print_bits():
+    for precision in PRECISIONS:
+        context = context_of(SCENE.system(), mm.VerletIntegrator(0.001), precision, SCENE.r, SCENE.v)
+        context.getIntegrator().step(100)
+        print(np.array([positions(context), velocities(context)]).tobytes().hex(), file=sys.stderr)
 
 
 def missing():
@@ -308,4 +367,7 @@ if __name__ == "__main__":
     if reason:
         print(f"left out: {reason}")
         sys.exit(77)
+    if sys.argv[1:] == ["bits"]:
+        print_bits()
+        sys.exit()
     unittest.main()
