@@ -105,7 +105,7 @@ static void check_tolerance(int is_long)
 {
     assembly a = short_or_long(CHAIN_COIL, is_long, IN_ORDER, 87);
     double *start = drift(&a, 0.01, 1);
-    int64_t last = 100;
+    int64_t first = 100, last = 100;
     for (double tolerance = 1e-14; tolerance < 1e-1; tolerance *= 1e4) {
         double *q = copy_of(start, assembly_size(&a));
         hol_report report;
@@ -114,8 +114,10 @@ static void check_tolerance(int is_long)
         CHECK(hol_project_positions(a.chains, a.r, q, NULL, 0.01, NULL, 0, NULL, &report));
         CHECK(hol_violation(a.chains, q, NULL, &worst));
         CHECK_AT_MOST(worst.length, tolerance + rounding_of_a_bond(is_long ? 200 : 25, 1));
-        assert_true(report.iterations <= last);
+        /* A solve more where its factors are those of the one before, which a tighter tolerance makes anew. */
         last = report.iterations;
+        if (tolerance < 1e-13) first = last;
+        if (last > first + (tolerance < 1e-9)) fail_msg("tolerance %g: %lld iterations", tolerance, (long long)last);
         free(q);
     }
     assert_true(last <= 2);
