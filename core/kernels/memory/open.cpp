@@ -43,9 +43,11 @@ void repeat_masses(Block &block, const Lane *lane, Arena &arena) {
             continue;
         }
         double *const w3 = arena.doubles(3 * (block.n + 1 + W));
+        const double *const table = of.w;  // what is stored might be taken for it
+        const long full = table ? block.len[i] + 1 : 0;
         long k = 0;
-        for (; of.w && k + W <= block.len[i] + 1; k += W) {
-            const vec x = load(of.w + k);
+        for (; k + W <= full; k += W) {
+            const vec x = load(table + k);
             HOL_UNROLL
             for (int j = 0; j < 3; ++j) {
                 vec three = {};
