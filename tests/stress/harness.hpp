@@ -32,9 +32,8 @@ struct harness {
     /** What stands at the end; by default a table for each class and a line for each class and set. */
     std::function<void(const std::vector<std::string> &sets, const std::vector<Tally> &of_set)> print;
 
-    /** PERCENT of each class may exceed a bound; below 0: nothing may. Returns the tallies of all sets, and whether all
-     * is within. */
-    std::vector<Tally> run(const soak_options &options, double percent, bool &within) const
+    /** Returns the tallies of all sets; complete: no process ended before its time. */
+    std::vector<Tally> run(const soak_options &options, bool &complete) const
     {
         const std::vector<std::string> sets = sets_of_kernels();
         shared_tallies<Tally> tallies(options.workers, sets.size());
@@ -62,16 +61,21 @@ struct harness {
             print_sums(names, sets, of_set);
         }
         if (lost > 0) std::printf("stress: %d processes ended before their time\n", lost);
-        within = lost == 0;
-        for (const Tally &t : of_set)
-            within = within && t.within(percent < 0 ? 1 : largest_excess, percent < 0 ? 0 : percent / 100);
+        complete = lost == 0;
         return of_set;
     }
+    /** The same for all sets. 0: all is within. */
     int run(const soak_options &options, double percent) const
     {
         bool within = false;
-        run(options, percent, within);
+        const std::vector<Tally> of_set = run(options, within);
+        for (const Tally &t : of_set) within = within && is_within(t, percent);
         return within ? 0 : 1;
+    }
+    /** PERCENT of each class may exceed a bound; below 0: nothing may. */
+    static bool is_within(const Tally &t, double percent)
+    {
+        return t.within(percent < 0 ? 1 : largest_excess, percent < 0 ? 0 : percent / 100);
     }
 };
 
