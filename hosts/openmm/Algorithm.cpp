@@ -9,11 +9,11 @@
 
 using namespace OpenMM;
 
-namespace {
-
-void ask(int status) {
+void OpenMM::ask(int status) {
     if (status != HOL_OK) throw OpenMMException(std::string("holonomic: ") + hol_error_message());
 }
+
+namespace {
 
 // OpenMM's vectors are three doubles each, one after the other.
 static_assert(sizeof(Vec3) == 3 * sizeof(double), "");

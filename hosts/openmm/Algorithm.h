@@ -12,6 +12,9 @@
 
 namespace OpenMM {
 
+// Throws the library's message unless the status of a call is HOL_OK.
+void ask(int status);
+
 // Tolerances that OpenMM hands over are not looked at: results are right to their rounding.
 class HolonomicAlgorithm : public ReferenceConstraintAlgorithm {
 public:

@@ -68,11 +68,11 @@ near() {
 
 mean() { column "$1" "$2" | awk '{ s += $1 } END { printf "%.12g", s / NR }'; }
 
-# stops WORDS VARIABLE VALUE...: LAMMPS stops with an error that has these words.
+# stops INPUT WORDS VARIABLE VALUE...: LAMMPS stops with an error that has these words.
 stops() {
-    local words=$1
-    shift
-    lammps 1 out "$INPUTS/beads.lmp" "$@" && fail "LAMMPS did not stop: $words"
+    local input=$1 words=$2
+    shift 2
+    lammps 1 out "$INPUTS/$input.lmp" "$@" && fail "LAMMPS did not stop: $words"
     grep -q "ERROR.*$words" out || { grep ERROR out; fail "not the error expected: $words"; }
     grep -m1 ERROR out
 }

@@ -47,10 +47,6 @@ void write(ArrayInterface &array, const std::vector<double> &values) {
     ofDoubles(array) ? uploaded<double>(array, values) : uploaded<float>(array, values);
 }
 
-void ask(int status) {
-    if (status != HOL_OK) throw OpenMMException(std::string("holonomic: ") + hol_error_message());
-}
-
 std::vector<int> atomsOf(const hol_chains *chains, std::int64_t molecule) {
     std::int64_t n;
     ask(hol_chains_molecule(chains, molecule, nullptr, &n, nullptr));

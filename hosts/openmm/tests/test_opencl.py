@@ -261,16 +261,27 @@ class Contexts(unittest.TestCase):
         self.assertLess(worst(positions(context), bonds), 1e-3)
 
 
+def kick(context, atom):
+    """So that the next step is too long."""
+    v = velocities(context)
+    v[atom] += (0, 0, 900)
+    context.setVelocities(v)
+
+
+def kicked(precision, atom):
+    """Before step 4."""
+    integrator = mm.VerletIntegrator(0.001)
+    context = context_of(SCENE.system(), integrator, precision, SCENE.r, SCENE.v)
+    integrator.step(3)
+    kick(context, atom)
+    return context, integrator
+
+
 class Failures(unittest.TestCase):
     def test_of_a_step_name_the_atoms_and_the_step(self):
         for precision in PRECISIONS:
-            integrator = mm.VerletIntegrator(0.001)
-            context = context_of(SCENE.system(), integrator, precision, SCENE.r, SCENE.v)
-            integrator.step(3)
-            v = velocities(context)
             first = SCENE.bonds[6][0]  # the third water
-            v[first] += (0, 0, 900)
-            context.setVelocities(v)
+            context, integrator = kicked(precision, first)
             integrator.step(1)
             with self.assertRaisesRegex(mm.OpenMMException, f"atoms {first}, {first + 1}, {first + 2} could not be solved in step 4"):
                 context.getState(getEnergy=True)
@@ -282,23 +293,13 @@ class Failures(unittest.TestCase):
             self.assertLess(worst(positions(context), SCENE.moving()), PRECISIONS[precision])
 
     def test_are_told_within_sixteen_steps(self):
-        integrator = mm.VerletIntegrator(0.001)
-        context = context_of(SCENE.system(), integrator, "mixed", SCENE.r, SCENE.v)
-        integrator.step(3)
-        v = velocities(context)
-        v[SCENE.bonds[0][0]] += (0, 0, 900)
-        context.setVelocities(v)
+        context, integrator = kicked("mixed", SCENE.bonds[0][0])
         with self.assertRaisesRegex(mm.OpenMMException, "in step 4"):
             integrator.step(17)
 
     def test_of_a_step_are_told_by_the_next_call_that_waits(self):
         """And not forgotten for those that applyConstraints finds."""
-        integrator = mm.VerletIntegrator(0.001)
-        context = context_of(SCENE.system(), integrator, "mixed", SCENE.r, SCENE.v)
-        integrator.step(3)
-        v = velocities(context)
-        v[SCENE.bonds[0][0]] += (0, 0, 900)
-        context.setVelocities(v)
+        context, integrator = kicked("mixed", SCENE.bonds[0][0])
         integrator.step(1)
         crude = SCENE.r + 0.12 * np.random.default_rng(23).normal(size=SCENE.r.shape)
         context.setPositions(crude)
@@ -314,9 +315,7 @@ class Failures(unittest.TestCase):
         integrator.step(5)
         context.getState(getEnergy=True)
         context.setStepCount(4)
-        v = velocities(context)
-        v[SCENE.bonds[0][0]] += (0, 0, 900)
-        context.setVelocities(v)
+        kick(context, SCENE.bonds[0][0])
         integrator.step(1)
         with self.assertRaisesRegex(mm.OpenMMException, r"atoms 0, 1, 2 could not be solved in step 5: [^;]*$"):
             context.getState(getEnergy=True)
