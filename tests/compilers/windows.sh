@@ -9,7 +9,8 @@ set -u
 top=$(cd "$(dirname "$0")/../.." && pwd) || exit 1
 build=$1
 target=x86_64-w64-mingw32
-command -v $target-g++-posix >/dev/null || command -v $target-g++ >/dev/null || { echo "no $target-g++"; exit 77; }
+compiler() { command -v "$target-$1-posix" || command -v "$target-$1"; } # gcc, g++ or gfortran, as the toolchain file takes them
+compiler g++ >/dev/null || { echo "no $target-g++"; exit 77; }
 wine=$(command -v wine64 || ls /usr/lib/wine/wine64 2>/dev/null || command -v wine) || { echo "no wine"; exit 77; }
 mkdir -p "$build" || exit 1
 build=$(cd "$build" && pwd)
@@ -82,20 +83,19 @@ unset HOLONOMIC_ISA
 # The archive and the wheel, as users get them: programs in C and Fortran print what they print elsewhere, and the DLL that the
 # package for Python asks for by name lies in it and can be loaded.
 packed() {
-    local here=$build/unpacked prefix compiler
+    local here=$build/unpacked prefix fortran
     rm -rf "$here" && mkdir -p "$here/wheel" && (cd "$top" && BUILD_DIR="$build" scripts/windows) || return 1
     (cd "$here" && cmake -E tar xf "$build"/packages/holonomic-*-windows-x86_64.zip) || return 1
     prefix=$(ls -d "$here"/holonomic-*)
     (
         export WINEPATH="Z:$prefix/bin"
         cd "$here" || exit 1
-        compiler=$(command -v $target-gcc-posix || command -v $target-gcc)
-        "$compiler" "$top/tests/install/programs/rotor.c" -I"$prefix/include" -L"$prefix/lib" -lholonomic -o rotor_c.exe || exit 1
+        "$(compiler gcc)" "$top/tests/install/programs/rotor.c" -I"$prefix/include" -L"$prefix/lib" -lholonomic -o rotor_c.exe || exit 1
         ls "$prefix"/bin/*.dll "$prefix"/lib/* || exit 1
         "$wine" rotor_c.exe | tr -d '\r' | tee printed
         grep -q '^tension 1.000 forces 1.000 -1.000$' printed || exit 1
-        compiler=$(command -v $target-gfortran-posix || command -v $target-gfortran) || exit 0
-        "$compiler" "$top/tests/install/programs/rotor_free.f90" -I"$(dirname "$(find "$prefix" -name holonomic.mod)")" -L"$prefix/lib" \
+        fortran=$(compiler gfortran) || exit 0
+        "$fortran" "$top/tests/install/programs/rotor_free.f90" -I"$(dirname "$(find "$prefix" -name holonomic.mod)")" -L"$prefix/lib" \
             -lholonomic_fortran "$prefix/lib/libholonomic.dll.a" -static -o rotor_f.exe || exit 1
         "$wine" rotor_f.exe | tr -d '\r' | tee printed
         grep -q '^tension 1.000 forces 1.000 -1.000$' printed
@@ -112,8 +112,7 @@ int main(int n, char **name)
     return version ? printf("wheel: holonomic %s\n", version()) < 0 : 1;
 }
 END
-    compiler=$(command -v $target-gcc-posix || command -v $target-gcc)
-    "$compiler" "$here/load.c" -o "$here/load.exe" || return 1
+    "$(compiler gcc)" "$here/load.c" -o "$here/load.exe" || return 1
     (
         unset WINEPATH
         name=$(sed -n 's/^_NAME = "\(.*\)" if os.name == "nt".*/\1/p' "$here/wheel/holonomic/_library.py")

@@ -73,29 +73,30 @@ Unit Chains::unit(const Plan &plan, const Plan::Piece &p, Lane *lane) const {
     return {&plan.loose_chains[at(p.first)], p.count, p.count == 1, large};  // one is like itself
 }
 
-MoleculeUnit Chains::unit(const Plan &plan, const Plan::Piece &p, MoleculeLane *lane) const {
-    if (p.group >= 0) return unit_of_group(plan, p, lane);
+namespace {
+
+inline MoleculeUnit unit_of(const Plan &plan, const Plan::Piece &p, const MoleculeLane *lanes, bool regular) {
     return {plan.elimination_plans[at(p.shape)],
-            &plan.loose_molecules[at(p.first)],
+            lanes,
             p.count,
-            false,
+            regular,
             plan.n_bonds > bonds_in_cache,
             nullptr,
             p.n_batches > 0 ? plan.tree_batches[p.first_batch] : nullptr,
             p.n_batches};
 }
 
+}  // namespace
+
+MoleculeUnit Chains::unit(const Plan &plan, const Plan::Piece &p, MoleculeLane *lane) const {
+    if (p.group >= 0) return unit_of_group(plan, p, lane);
+    return unit_of(plan, p, &plan.loose_molecules[at(p.first)], false);
+}
+
 // Not inlined: what comes as a list needs none of it.
 [[gnu::noinline]] MoleculeUnit Chains::unit_of_group(const Plan &plan, const Plan::Piece &p, MoleculeLane *lane) const {
     *lane = molecule_lane_of(plan, groups_.all()[at(p.group)], p.first, p.stage, p.part);
-    return {plan.elimination_plans[at(p.shape)],
-            lane,
-            p.count,
-            true,
-            plan.n_bonds > bonds_in_cache,
-            nullptr,
-            p.n_batches > 0 ? plan.tree_batches[p.first_batch] : nullptr,
-            p.n_batches};
+    return unit_of(plan, p, lane, true);
 }
 
 }  // namespace holonomic
