@@ -3,6 +3,7 @@
 by how much the total energy, as a temperature, changes in free flight. Run by hosts/gromacs/run; all arguments are optional.
 
     beside.py [--repeat 5] [--threads 1] [--gmx gmx] [--folder FOLDER] [SCENE...]
+    beside.py --protein FILE.pdb [...]     a protein of your own, without water: its X-H bonds, and all of its bonds
 """
 import argparse
 import pathlib
@@ -39,12 +40,12 @@ def minimised(make, count, spacing, **mdp):
     return prepare
 
 
-def protein(sequence, **mdp):
-    """One helix, minimised without constraints."""
+def protein(write, **mdp):
+    """write(FILE): a .pdb of one protein, which is minimised without constraints."""
     def prepare(folder, gmx):
         folder.mkdir(parents=True, exist_ok=True)
-        helix.write(folder / "helix.pdb", sequence)
-        g.call([gmx, "-quiet", "pdb2gmx", "-f", "helix.pdb", "-ff", "oplsaa", "-water", "none", "-ignh", "-o", "made.gro"],
+        write(folder / "protein.pdb")
+        g.call([gmx, "-quiet", "pdb2gmx", "-f", "protein.pdb", "-ff", "oplsaa", "-water", "none", "-ignh", "-o", "made.gro"],
                folder)
         g.call([gmx, "-quiet", "editconf", "-f", "made.gro", "-o", "conf.gro", "-princ", "-bt", "triclinic", "-d", "1.2"],
                folder, "System\n")
@@ -55,16 +56,27 @@ def protein(sequence, **mdp):
     return prepare
 
 
+def helix_of(sequence):
+    return lambda file: helix.write(file, sequence)
+
+
+def of_file(path):
+    """Without its water, which would be a row of SETTLE's."""
+    lines = [line for line in path.read_text().splitlines()
+             if line.startswith(("ATOM", "TER")) and line[17:20] not in ("HOH", "SOL", "WAT")]
+    return lambda file: file.write_text("\n".join(lines) + "\nEND\n")
+
+
 SCENES = {
     "cholesterol 20 fs": molecules((s.cholesterol, 400), spacing=1.2, interacting=False, dt=0.02, nsteps=2500),
     "cholesterol 30 fs": molecules((s.cholesterol, 400), spacing=1.2, interacting=False, dt=0.03, nsteps=1667),
     "dodecane h-bonds": molecules((lambda: s.alkane(12), 216), spacing=1.7, nsteps=400, constraints="h-bonds"),
     "dodecane all-bonds": molecules((lambda: s.alkane(12), 216), spacing=1.7, nsteps=400, constraints="all-bonds"),
     "lipids h-bonds": minimised(s.lipid, 64, 5.0, constraints="h-bonds", nsteps=400),
-    "helix h-bonds": protein(196 * "A", constraints="h-bonds", nsteps=1000),
-    "helix all-bonds": protein(196 * "A", constraints="all-bonds", nsteps=1000),
-    "lysozyme h-bonds": protein(helix.LYSOZYME, constraints="h-bonds", nsteps=1000),
-    "lysozyme all-bonds": protein(helix.LYSOZYME, constraints="all-bonds", nsteps=1000),
+    "helix h-bonds": protein(helix_of(196 * "A"), constraints="h-bonds", nsteps=1000),
+    "helix all-bonds": protein(helix_of(196 * "A"), constraints="all-bonds", nsteps=1000),
+    "lysozyme h-bonds": protein(helix_of(helix.LYSOZYME), constraints="h-bonds", nsteps=1000),
+    "lysozyme all-bonds": protein(helix_of(helix.LYSOZYME), constraints="all-bonds", nsteps=1000),
     "coils of 50 bonds": molecules((lambda: s.chain(50), 64), spacing=8.0, interacting=False, dt=0.005, nsteps=1000),
 }
 
@@ -75,15 +87,20 @@ def main():
     arguments.add_argument("--threads", type=int, default=1)
     arguments.add_argument("--gmx", default=g.MIXED)
     arguments.add_argument("--folder", type=pathlib.Path, default=pathlib.Path("build/beside"))
+    arguments.add_argument("--protein", type=pathlib.Path, metavar="FILE.pdb")
     arguments.add_argument("scenes", nargs="*", metavar="SCENE", help="of: " + ", ".join(SCENES))
     options = arguments.parse_args()
-    for name in options.scenes or SCENES:
-        compare(name, options)
+    scenes = SCENES
+    if options.protein:
+        scenes = {f"{options.protein.stem} {bonds}": protein(of_file(options.protein), constraints=bonds, nsteps=1000)
+                  for bonds in ("h-bonds", "all-bonds")}
+    for name in options.scenes or scenes:
+        compare(name, scenes[name], options)
 
 
-def compare(name, options):
+def compare(name, prepare, options):
     folder = options.folder.resolve() / name.replace(" ", "-")
-    mdp = SCENES[name](folder, options.gmx)
+    mdp = prepare(folder, options.gmx)
     tags = {solver: re.sub("[ ,]", "", solver) for solver in SOLVERS}
     for solver, orders in SOLVERS.items():
         s.write_mdp(folder, **{**mdp, **orders})
