@@ -179,12 +179,14 @@ void copy(const Arrangement &arrangement, const real *from, double *to, int n_th
     });
 }
 
-bool move(const Arrangement &arrangement, const double *d, double inverse_dt, real *q, real *v, double near,
-          int n_threads) {
+bool move(const Arrangement &arrangement, double *d, double inverse_dt, real *q, real *v, double near, int n_threads) {
     const int *const atoms = arrangement.atoms.data();
     return for_all(static_cast<int64_t>(arrangement.atoms.size()), n_threads, [=](int64_t k) {
-        const DoublePair xy = *reinterpret_cast<const DoublePair *>(d + 3 * k);
+        DoublePair &first = *reinterpret_cast<DoublePair *>(d + 3 * k);
+        const DoublePair xy = first;
         const double z = d[3 * k + 2];
+        first = DoublePair{};
+        d[3 * k + 2] = 0;
         const ptrdiff_t i = 3 * static_cast<ptrdiff_t>(atoms[k]);
         add(q + i, xy, z);
         if (v != nullptr) add(v + i, inverse_dt * xy, inverse_dt * z);

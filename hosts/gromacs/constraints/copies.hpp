@@ -13,8 +13,9 @@ bool copy_both_whole(const Arrangement &, const t_pbc *, const real *x, const re
                      double near, int n_threads);
 void copy(const Arrangement &, const real *from, double *to, int n_threads);
 
-// q += d and, if there are velocities, v += d / dt. True if no d is longer than `near`.
-bool move(const Arrangement &, const double *d, double inverse_dt, real *q, real *v, double near, int n_threads);
+// q += d and, if there are velocities, v += d / dt; then d = 0, while it is in a cache. True if no d is longer than
+// `near`.
+bool move(const Arrangement &, double *d, double inverse_dt, real *q, real *v, double near, int n_threads);
 // projected = p, or where it is other than q, projected += p - q.
 void hand_back(const Arrangement &, const double *p, const real *q, real *projected, int n_threads);
 

@@ -25,10 +25,10 @@ void Rank::derivatives(const Call &call, real *projected, gmx::ConstraintVariabl
     if (status == HOL_OK && flexible_alone) {
         for (size_t k = 0; k < molecules.n_bonds(); k++)
             if (!molecules.flexible(k)) lambda[k] = 0;
-        change.assign(x.size(), 0);
-        status = hol_reactions(chains, x.data(), HOL_BOX, lambda, nullptr, change.data(), HOL_WRITE, nullptr, virial);
+        std::vector<double> force(x.size());
+        status = hol_reactions(chains, x.data(), HOL_BOX, lambda, nullptr, force.data(), HOL_WRITE, nullptr, virial);
         copy(places, call.q, q.data(), n_threads);
-        for (size_t i = 0; i < q.size(); i++) q[i] += molecules.inverse_mass(i / 3) * change[i];
+        for (size_t i = 0; i < q.size(); i++) q[i] += molecules.inverse_mass(i / 3) * force[i];
     }
     if (status != HOL_OK) {
         molecules.message(project);

@@ -49,7 +49,7 @@ bool Rank::positions(const Call &call, bool wants_rmsd) {
         const int n_threads = molecules.n_threads();
         x.resize(3 * molecules.n_atoms());
         q.resize(x.size());
-        change.assign(x.size(), 0);
+        change.resize(x.size());
         const double near = no_turn(molecules, call);
         bool may_turn = !copy_both_whole(places, call.pbc, call.x, call.q, x.data(), q.data(), near / 2, n_threads);
         molecules.set_flexible(x.data());

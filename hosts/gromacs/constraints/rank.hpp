@@ -39,7 +39,8 @@ private:
     int move_crude_start();
     void measure(const Call &);
 
-    std::vector<double> x, q, change, multipliers;  // at the places of the molecules' arrangement
+    // At the places of the molecules' arrangement. change: 0 between calls, what positions change by during one.
+    std::vector<double> x, q, change, multipliers;
 };
 
 // What is left of the constraints at q, in the precision of GROMACS.

@@ -152,6 +152,32 @@ struct LdlDisplacements {
         return abs(mul_add(d.z, d.z, mul_add(d.y, d.y, mul_add(d.x, d.x, -a2[k]))) * per_a2[k]);
     }
 
+    // The lanes in which no bond has turned from the reference by a larger angle than one that is moved straight across
+    // until |D.D - a^2| / a^2 is `far`.
+    __attribute__((noinline)) MaskOf<V> turned_little(double far) const {
+        up([&](const Tile &tile, const Rows<V> &) HOL_FORCED {
+            Columns<V> least = all_columns<V>(0);
+            for (int64_t k = tile.first; k < tile.end; k += step) {
+                const int64_t row = tile.first_row + k - tile.first;
+                Row d[step], ref[step];
+                HOL_UNROLL
+                for (int i = 0; i < step; ++i) {
+                    d[i] = moved_bond(tile, row + i);
+                    ref[i] = b[row + i];
+                }
+                const Turned<V> now = turned(d), before = turned(ref);
+                const auto dot = [](const Turned<V> &x, const Turned<V> &y)
+                                     HOL_FORCED { return multiply_add(x.z, y.z, multiply_add(x.y, y.y, x.x * y.x)); };
+                const Columns<V> along = dot(now, before), whole = some(a2, k) * dot(before, before);
+                least = smaller(all_columns<V>(1 + far) * (along * absolute(along)) - whole, least);
+            }
+            found[&tile - s.tile].pull = smallest_of<V>(least);
+        });
+        V least = {};
+        for (int32_t i = 0; i < s.n_tiles; ++i) least = min(found[i].pull, least);
+        return less_equal(V{}, least);
+    }
+
     // Displacements by the bonds of a tile, and of its atoms by all: times w only in the end.
     HOL_FORCED void pull(const Tile &tile) const {
         sum_pulls(s, tile, tau, b.from(tile.first_row), moves.from(tile.first_site));

@@ -105,8 +105,9 @@ struct LdlPositions {
         Columns<V> least = all_columns<V>(1e300), most = {};
         const int32_t *const bond = newton.s.bond_of;
         for (int64_t k = tile.first; k < tile.end; k += step) {
-            for (int64_t i = k + rows_ahead; i < k + rows_ahead + step && i < tile.end; ++i)
-                __builtin_prefetch(lane[0].length + bond[i], 0, 2);
+            if (is_from_memory(newton.s))
+                for (int64_t i = k + rows_ahead; i < k + rows_ahead + step && i < tile.end; ++i)
+                    __builtin_prefetch(lane[0].length + bond[i], 0, 2);
             Columns<V> a = {};
             for (int i = 0; i < step; ++i) {
                 V one = {};
@@ -192,7 +193,8 @@ struct LdlPositions {
         Limits<V> limits(call, largest_coordinate, a_min);
         limits.far = call.worst_trial;
         const Solved<V> out = iterate<V, false, true>(newton, limits, call, in_use);
-        const MaskOf<V> far = out.converged & less(Width<V>::all(call.far_trial), newton.opening);
+        MaskOf<V> far = out.converged & less(Width<V>::all(call.far_trial), newton.opening);
+        if (any(far)) far = far & ~newton.turned_little(call.far_trial);  // bonds that forces have stretched
         MaskOf<V> converged = out.converged & ~coarse_moves();
         if (any(far)) converged = converged & (~far | newton.is_certified());
         const unsigned moved = bits(converged), good = moved | bits(out.untouched);
