@@ -69,9 +69,8 @@ static void forces_agree_with_a_dense_solution_for_molecules_of_every_shape(void
         assert_solution(&m, NULL, m.f);
         mixture_free(&m);
     }
-    static const molecule_kind kinds[] = {MOLECULE_TREE, MOLECULE_RING, MOLECULE_TRIANGLES,
-                                          MOLECULE_COMB, MOLECULE_STAR, MOLECULE_CHAIN,
-                                          MOLECULE_PEPTIDE, MOLECULE_FUSED_RINGS};
+    static const molecule_kind kinds[] = {MOLECULE_TREE, MOLECULE_RING,  MOLECULE_TRIANGLES, MOLECULE_COMB,
+                                          MOLECULE_STAR, MOLECULE_CHAIN, MOLECULE_PEPTIDE,   MOLECULE_FUSED_RINGS};
     for (size_t k = 0; k < sizeof kinds / sizeof *kinds; ++k) {
         mixture m = mixture_of_kind(kinds[k], quick_run() ? 12 : 60, 3, 14, MIXED, 200 + k);
         assert_solution(&m, m.v, m.f);
@@ -83,8 +82,8 @@ static void forces_agree_with_a_dense_solution_for_molecules_of_every_shape(void
 static void uneven_forces_agree_with_a_dense_solution(void **state)
 {
     (void)state;
-    static const molecule_kind kinds[] = {MOLECULE_TREE, MOLECULE_RING, MOLECULE_COMB, MOLECULE_STAR, MOLECULE_CHAIN,
-                                          MOLECULE_PEPTIDE, MOLECULE_FUSED_RINGS};
+    static const molecule_kind kinds[] = {MOLECULE_TREE,  MOLECULE_RING,    MOLECULE_COMB,       MOLECULE_STAR,
+                                          MOLECULE_CHAIN, MOLECULE_PEPTIDE, MOLECULE_FUSED_RINGS};
     random_stream stream = random_seed(12);
     for (size_t k = 0; k < sizeof kinds / sizeof *kinds; ++k)
         for (int size = 3; size < 30; size = size * 3 + 1) {
@@ -107,8 +106,8 @@ static void uneven_right_hand_sides_agree_with_a_dense_solution(void **state)
 {
     (void)state;
     enum { SIDES = 4 };
-    static const molecule_kind kinds[] = {MOLECULE_TREE, MOLECULE_RING, MOLECULE_COMB, MOLECULE_STAR, MOLECULE_CHAIN,
-                                          MOLECULE_PEPTIDE, MOLECULE_FUSED_RINGS};
+    static const molecule_kind kinds[] = {MOLECULE_TREE,  MOLECULE_RING,    MOLECULE_COMB,       MOLECULE_STAR,
+                                          MOLECULE_CHAIN, MOLECULE_PEPTIDE, MOLECULE_FUSED_RINGS};
     random_stream stream = random_seed(11);
     for (size_t k = 0; k < sizeof kinds / sizeof *kinds; ++k)
         for (int size = 3; size < 30; size = size * 3 + 1) {
