@@ -58,7 +58,7 @@ struct Sets {
             best = forced;
             one_lane = nullptr;
         }
-        if (best->lanes < 4) one_lane = nullptr;  // the baseline rounds products: other bits
+        if (one_lane && best->fused != one_lane->fused) one_lane = nullptr;  // other bits
     }
 
     void consider(const Kernels &set, bool installed) {
