@@ -7,7 +7,11 @@
 namespace holonomic::HOL_ISA {
 
 // Whether there are functions for all lanes at once.
-#define HOL_ELEMENTS (HOL_NEON || (HOL_LANES == 4 && defined(__AVX2__)))
+#if HOL_NEON || (HOL_LANES == 4 && defined(__AVX2__))
+#define HOL_ELEMENTS 1
+#else
+#define HOL_ELEMENTS 0
+#endif
 
 #if HOL_LANES >= 4 && defined(__AVX2__)
 // Two elements of four lanes, from element k of their rows.

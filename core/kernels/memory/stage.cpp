@@ -74,8 +74,10 @@ HOL_INLINE long unpack(const double *packed, long n, const Apart &to) {
 #elif defined(__aarch64__)
 HOL_INLINE long pack(const Apart &from, long n, double *packed) {
     long k = 0;
-    for (; k + 1 <= n; k += 2)
-        vst3q_f64(packed + 3 * k, {{vld1q_f64(from.x + k), vld1q_f64(from.y + k), vld1q_f64(from.z + k)}});
+    for (; k + 1 <= n; k += 2) {
+        const float64x2x3_t a = {{vld1q_f64(from.x + k), vld1q_f64(from.y + k), vld1q_f64(from.z + k)}};
+        vst3q_f64(packed + 3 * k, a);
+    }
     return k;
 }
 
