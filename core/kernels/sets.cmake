@@ -65,7 +65,7 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     set_source_files_properties(kernels/verbs/bodies.cpp PROPERTIES COMPILE_OPTIONS -fno-tree-vectorize)
 endif()
 
-option(HOLONOMIC_BASELINE "The kernels that every processor of this kind runs; OFF for trying changes with one other set (scripts/try)" ON)
+option(HOLONOMIC_BASELINE "The kernels that every x86-64 processor runs; OFF where the library stays on this machine (scripts/demo, scripts/try)" ON)
 option(HOLONOMIC_TEST_SETS "With the tests, kernels of a number of lanes that no set has, in a library for tests alone" OFF)
 set(HOLONOMIC_TEST_LANES "8" CACHE STRING "Their lanes; one, two and four are installed")
 
@@ -100,7 +100,7 @@ set(extended_solvers)
 function(holonomic_kernels name lanes)
     cmake_parse_arguments(PARSE_ARGV 2 set "TESTS_ONLY;CHAINS_ONLY" "EXTENDED;NETWORKS" "FLAGS;TUNING;NEEDS")
     if((set_TESTS_ONLY AND NOT (HOLONOMIC_BUILD_TESTS AND HOLONOMIC_TEST_SETS)) OR
-       (NOT set_TESTS_ONLY AND NOT name IN_LIST HOLONOMIC_INSTRUCTION_SETS AND NOT (name STREQUAL HOLONOMIC_BASELINE_SET AND HOLONOMIC_BASELINE)))
+       (NOT set_TESTS_ONLY AND NOT name IN_LIST HOLONOMIC_INSTRUCTION_SETS AND NOT (name STREQUAL HOLONOMIC_BASELINE_SET AND (HOLONOMIC_BASELINE OR NOT HOLONOMIC_X86_64))))
         return()
     endif()
     set(sources ${chain_kernels} ${other_kernels})
