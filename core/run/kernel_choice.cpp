@@ -1,7 +1,7 @@
-// Which kernels run. All but those of `baseline` fuse multiplication and addition, and give the same bits for a chain that
-// fits into a lane (tests/lanes/same_bits.sh), so that a call may choose by what it has to do. A chain that comes alone
-// takes one lane (`scalar`; docs/performance.md), from two on they are faster side by side. Four lanes with the 32
-// registers of AVX-512 (`avx512vl`) run wherever they can: beside avx2 they were faster or as fast. Eight lanes were
+// Which kernels run. All but those of `baseline` fuse multiplication and addition, and give the same bits for a chain
+// that fits into a lane (tests/lanes/same_bits.sh), so that a call may choose by what it has to do. A chain that comes
+// alone takes one lane (`scalar`; docs/performance.md), from two on they are faster side by side. Four lanes with the
+// 32 registers of AVX-512 (`avx512vl`) run wherever they can: beside avx2 they were faster or as fast. Eight lanes were
 // slower on AMD's family 25 in all scenes but one, and are no set any more (docs/development/trials.md). On 64-bit Arm
 // there is one set, `neon`, beside `scalar`.
 //

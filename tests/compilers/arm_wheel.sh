@@ -23,7 +23,7 @@ cmake --build "$build" -j "${JOBS:-2}" --target holonomic_wheel >"$work/log" 2>&
 (cd "$top" && HOLONOMIC_WHEEL_LIBRARIES=$build/python/libraries "$makes_wheels" -m pip wheel --quiet --no-build-isolation --no-deps \
     --no-index --wheel-dir "$work" .)
 (cd "$work/unpacked" && cmake -E tar xf "$work"/holonomic-*-py3-none-manylinux_2_*_aarch64.whl)
-echo "$(basename "$work"/*.whl)"
+basename "$work"/*.whl
 
 libraries=$work/unpacked/holonomic
 $target-gcc "$top/tests/install/programs/rotor.c" -I"$top/capi" "$libraries/libholonomic.so.0" -Wl,-rpath-link,"$libraries" -o "$work/rotor"

@@ -40,8 +40,8 @@ struct Apart {
     }
 };
 
-// Copies the atoms 0 .. n between x, y, z and packed[n+1][3], four (on Arm two) at a time. Returns the first atom that is left. A
-// plain loop takes twice as many instructions.
+// Copies the atoms 0 .. n between x, y, z and packed[n+1][3], four (on Arm two) at a time. Returns the first atom that
+// is left. A plain loop takes twice as many instructions.
 #if defined(__AVX2__)
 HOL_INLINE long pack(const Apart &from, long n, double *packed) {
     long k = 0;
