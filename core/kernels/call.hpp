@@ -279,6 +279,7 @@ struct KeptKernels {
 struct Kernels {
     const char *name;
     int lanes;
+    bool fused;  // products and sums are rounded once
     int64_t (*scratch_bytes)(int64_t n_bonds);
     int64_t piece_bytes;
     void (*forces)(const ForcesCall &, const Unit &, double *scratch, Tally &);

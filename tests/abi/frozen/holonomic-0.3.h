@@ -138,8 +138,8 @@ HOL_API int hol_error_remember(int status, const char *message);
 
 /**
  * The instruction set that the calculations use on this machine: "baseline", "avx2" or "avx512vl" (four lanes with the
- * registers of AVX-512). Never NULL. A chain of up to 256 bonds that comes alone runs with "scalar" (one lane, with
- * AVX2's instructions) where one of the last two runs: the same bits, in less time. The environment variable
+ * registers of AVX-512); on 64-bit Arm "neon". Never NULL. A chain of up to 256 bonds that comes alone runs with
+ * "scalar" (one lane) where one of the last three runs: the same bits, in less time. The environment variable
  * HOLONOMIC_ISA, read at the first use in a process, forces one of these names if the machine has it. Since 0.1.
  */
 HOL_API const char *hol_instruction_set(void);
