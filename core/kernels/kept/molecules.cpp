@@ -1,4 +1,5 @@
-// Trees and rings in lanes, and triangles: their elimination kept, and solves with it.
+// Kept factors of trees, rings, stars and triangles in lanes: the elimination of forces is kept, and right-hand
+// sides are solved for with it. Blocks that are flagged keep nothing, and go the ordinary way (flagged.hpp).
 #include "core/kernels/kept/stars.hpp"
 #include "core/kernels/kept/trees.hpp"
 #include "core/kernels/kept/triangles.hpp"
