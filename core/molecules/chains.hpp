@@ -151,10 +151,10 @@ public:
     }
     const Plan &plan_of_parts() const;  // likewise; no molecule of it is linear
     // units.cpp
-    Unit unit(const Plan &plan, const Plan::Piece &piece, Lane *lane) const;  // lane: memory for the first of a group
-    MoleculeUnit unit(const Plan &plan, const Plan::Piece &piece, MoleculeLane *lane) const;
-    MoleculeUnit unit_of_group(const Plan &plan, const Plan::Piece &piece, MoleculeLane *lane) const;
-    std::int64_t piece_bonds(const Plan::Piece &piece) const;  // of one molecule of the piece; 0 if loose ones
+    Unit unit(const Plan &plan, const Plan::Chunk &chunk, Lane *lane) const;  // lane: memory for the first of a group
+    MoleculeUnit unit(const Plan &plan, const Plan::Chunk &chunk, MoleculeLane *lane) const;
+    MoleculeUnit unit_of_group(const Plan &plan, const Plan::Chunk &chunk, MoleculeLane *lane) const;
+    std::int64_t chunk_bonds(const Plan::Chunk &chunk) const;  // of one molecule of the chunk; 0 if loose ones
     const std::vector<std::int64_t> &reordered_bonds() const { return groups_.reordered(); }
     const std::vector<std::int64_t> &unconstrained() const { return unconstrained_; }
     // Whether a bond was given from the atom at which it ends here; by its place in the caller's arrays.
