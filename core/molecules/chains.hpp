@@ -96,9 +96,9 @@ public:
     std::int64_t n_chains() const { return groups_.n_molecules(); }
     std::int64_t n_molecules() const;  // with those that have bodies, which come last
     std::int64_t n_bonds() const { return n_bonds_; }
-    std::int64_t n_of_form(int form) const;
-    int form_of(std::int64_t molecule) const;  // a Form, or:
-    static constexpr int form_with_bodies = 5;
+    std::int64_t n_of_topology(int topology) const;
+    int topology_of(std::int64_t molecule) const;  // a Topology, or:
+    static constexpr int topology_with_bodies = 5;
     std::int64_t n_kinds() const;
     void offsets(std::int64_t *out) const;
     std::int64_t count_atoms(std::int64_t molecule) const;  // that `atoms` writes

@@ -147,7 +147,7 @@ Memory memory_of(const Chains &chains, std::int64_t least = 0) {
     m.n_blocks = (bodies.n_molecules() + block - 1) / block;
     m.scratch = static_cast<char *>(thread_memory(Keep::rigid, m.bytes));
     m.parts =
-        static_cast<Found *>(thread_memory(Keep::piece_tallies, m.n_blocks * static_cast<std::int64_t>(sizeof(Found))));
+        static_cast<Found *>(thread_memory(Keep::chunk_tallies, m.n_blocks * static_cast<std::int64_t>(sizeof(Found))));
     if (!m.scratch || !m.parts) throw std::bad_alloc();
     return m;
 }

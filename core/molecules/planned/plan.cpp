@@ -15,7 +15,7 @@ namespace holonomic {
 namespace {
 
 constexpr std::int64_t bonds_per_chunk = 4096;  // enough to hide the cost of a chunk, few enough to share out evenly
-// Pieces are cut at multiples of this, the lanes of the widest set that is installed. It is a matter of speed: kernels
+// Chunks are cut at multiples of this, the lanes of the widest set that is installed. It is a matter of speed: kernels
 // of any number of lanes take any number of chains.
 constexpr std::int64_t widest = 8;
 static_assert(widest <= most_lanes, "");
@@ -133,7 +133,7 @@ private:
         for (std::size_t e = 0; e < pairs.size(); ++e) pairs[e] = static_cast<std::int32_t>((e + 1) / 2);
         for (std::size_t i = 0; i < fixed.size(); ++i) fixed[i] = w[at(first) + i] == 0;
         const std::int32_t shape =
-            plan_->part_shapes.find(Form::chain, static_cast<std::int32_t>(n_bonds + 1),
+            plan_->part_shapes.find(Topology::chain, static_cast<std::int32_t>(n_bonds + 1),
                                     static_cast<std::int32_t>(n_bonds), pairs.data(), fixed.data(), -1);
         plan_->parts.push_back({first, n_bonds, n_shapes_ + shape});
     }
