@@ -59,7 +59,7 @@ struct Sets {
             best = forced;
             one_lane = nullptr;
         }
-        if (one_lane && best->fused != one_lane->fused) one_lane = nullptr;  // other bits
+        if (one_lane && best && best->fused != one_lane->fused) one_lane = nullptr;  // other bits
     }
 
     void consider(const Kernels &set, bool installed) {

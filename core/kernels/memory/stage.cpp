@@ -1,3 +1,5 @@
+// Copies a chain's atoms between the caller's layout and packed scratch (stage.hpp): floats, two dimensions,
+// separate arrays and lists. The kernels then see one layout, and the arithmetic is the same.
 #include "core/kernels/memory/stage.hpp"
 
 namespace holonomic::HOL_ISA {
