@@ -1,6 +1,6 @@
-// Kept factors of trees, rings, stars and triangles in lanes, and of molecules by sparse LDL^T: the elimination of forces
-// is kept, and right-hand sides are solved for with it. Blocks that are flagged keep nothing, and go the ordinary way
-// (flagged.hpp).
+// Kept factors of trees, rings, stars and triangles in lanes, and of molecules by sparse LDL^T: the elimination of
+// forces is kept, and right-hand sides are solved for with it. Blocks that are flagged keep nothing, and go the
+// ordinary way (flagged.hpp).
 #include "core/kernels/kept/ldl.hpp"
 #include "core/kernels/kept/stars.hpp"
 #include "core/kernels/kept/trees.hpp"

@@ -292,12 +292,12 @@ private:
 };
 
 std::int64_t Plan::bytes() const {
-    std::size_t bytes =
-        sizeof *this + chunks.capacity() * sizeof(Chunk) + loose_chains.capacity() * sizeof(Lane) +
-        loose_molecules.capacity() * sizeof(MoleculeLane) +
-        elimination_plans.capacity() * sizeof(void *) + shapes.capacity() * sizeof(shapes[0]) +
-        (stage.capacity() + part_start.capacity()) * sizeof(std::int64_t) + is_copy.capacity() +
-        copies.capacity() * sizeof(Copy) + parts.capacity() * sizeof(Part) + part_shapes.bytes() + tree_batches.bytes();
+    std::size_t bytes = sizeof *this + chunks.capacity() * sizeof(Chunk) + loose_chains.capacity() * sizeof(Lane) +
+                        loose_molecules.capacity() * sizeof(MoleculeLane) +
+                        elimination_plans.capacity() * sizeof(void *) + shapes.capacity() * sizeof(shapes[0]) +
+                        (stage.capacity() + part_start.capacity()) * sizeof(std::int64_t) + is_copy.capacity() +
+                        copies.capacity() * sizeof(Copy) + parts.capacity() * sizeof(Part) + part_shapes.bytes() +
+                        tree_batches.bytes();
     for (const std::vector<double> &table : w) bytes += table.capacity() * sizeof(double);
     return static_cast<std::int64_t>(bytes);
 }
