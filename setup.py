@@ -70,12 +70,20 @@ class TagBySymbols(bdist_wheel):
             return "py3", "none", "any"
         if glob.glob(os.path.join(self.bdist_dir, "**", "*.dll"), recursive=True):
             return "py3", "none", "win_amd64"
-        machine = platform.machine()
         libraries = glob.glob(os.path.join(self.bdist_dir, "**", "*.so*"), recursive=True)
+        machine = machine_of(libraries)
         if platform.libc_ver()[0] != "glibc" or not libraries:
             return "py3", "none", f"linux_{machine}"
         minor = max(int(number) for path in libraries for number in re.findall(rb"GLIBC_2\.(\d+)", read(path)))
         return "py3", "none", f"manylinux_2_{minor}_{machine}"
+
+
+def machine_of(libraries):
+    """The kind of processor that they are for, which may be another than this one: a field of their heads."""
+    kinds = {read(path)[18:20] for path in libraries}
+    if len(kinds) > 1:
+        raise SystemExit("the libraries are for several kinds of processors")
+    return {b"\x3e\0": "x86_64", b"\xb7\0": "aarch64"}.get(kinds.pop() if kinds else b"", platform.machine())
 
 
 def read(path):

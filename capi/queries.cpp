@@ -4,19 +4,21 @@
 #include "boundary.hpp"
 #include "which_box.hpp"
 
-using holonomic::Form;
 using holonomic::guarded;
 using holonomic::is_reference;
 using holonomic::make_error;
 using holonomic::need;
 using holonomic::Status;
+using holonomic::Topology;
 
 namespace {
 
-constexpr bool same(Form form, hol_shape shape) { return static_cast<int>(form) == static_cast<int>(shape); }
-static_assert(same(Form::chain, HOL_SHAPE_CHAIN) && same(Form::tree, HOL_SHAPE_TREE) &&
-                  same(Form::ring, HOL_SHAPE_RING) && same(Form::triangle, HOL_SHAPE_TRIANGLE) &&
-                  same(Form::other, HOL_SHAPE_OTHER) && holonomic::Chains::form_with_bodies == HOL_SHAPE_RIGID,
+constexpr bool same(Topology topology, hol_shape shape) {
+    return static_cast<int>(topology) == static_cast<int>(shape);
+}
+static_assert(same(Topology::chain, HOL_SHAPE_CHAIN) && same(Topology::tree, HOL_SHAPE_TREE) &&
+                  same(Topology::ring, HOL_SHAPE_RING) && same(Topology::triangle, HOL_SHAPE_TRIANGLE) &&
+                  same(Topology::other, HOL_SHAPE_OTHER) && holonomic::Chains::topology_with_bodies == HOL_SHAPE_RIGID,
               "core/molecules/shape.hpp and the public header disagree");
 
 using holonomic::Role;
@@ -54,7 +56,7 @@ int hol_chains_molecule(const hol_chains *chains, int64_t molecule, int *shape, 
         need(chains, "chains");
         const holonomic::Chains &all = chains->chains;
         const int64_t number = from_zero(all, molecule);
-        if (shape) *shape = all.form_of(number);
+        if (shape) *shape = all.topology_of(number);
         if (n_atoms) *n_atoms = all.count_atoms(number);
         if (n_bonds) *n_bonds = all.count_bonds(number);
     });
@@ -133,7 +135,7 @@ int hol_chains_roles(const hol_chains *chains, int *roles, int64_t *removed) {
 }
 
 int64_t hol_chains_n_of_shape(const hol_chains *chains, hol_shape shape) {
-    return chains ? chains->chains.n_of_form(shape) : 0;
+    return chains ? chains->chains.n_of_topology(shape) : 0;
 }
 
 int64_t hol_chains_n_kinds(const hol_chains *chains) { return chains ? chains->chains.n_kinds() : 0; }

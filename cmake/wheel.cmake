@@ -2,7 +2,7 @@
 # packs it. It needs of a system the C library and gcc's unwinder, which all have: the C++ library is inside, OpenMP's lies beside
 # it. An unwinder inside, and what of the C++ library nobody calls, would want a younger C library than the rest does.
 
-if(NOT BUILD_SHARED_LIBS OR CMAKE_CROSSCOMPILING OR NOT UNIX OR APPLE OR CMAKE_CXX_FLAGS MATCHES "-fsanitize")
+if(NOT BUILD_SHARED_LIBS OR NOT UNIX OR APPLE OR CMAKE_CXX_FLAGS MATCHES "-fsanitize")
     return()
 endif()
 

@@ -89,21 +89,21 @@ Reference::Reference(const Chains &chains, const AtomArray &bonds) : chains_(cha
             array->z = nullptr;
             array->packed = false;
         }
-    for (const Plan::Piece &piece : plan.pieces) {
-        const AtomArray &to = piece.where & holonomic::staged ? staged_ : atoms_;
+    for (const Plan::Chunk &chunk : plan.chunks) {
+        const AtomArray &to = chunk.where & holonomic::staged ? staged_ : atoms_;
         const auto take = [&](const auto &lane, std::int64_t number) {
             lay_out(chains.molecule(number), to, [&](std::int64_t i) { return atom_of(lane, i); });
         };
-        if (piece.shape == linear) {
+        if (chunk.shape == linear) {
             Lane first;
-            const Unit unit = chains.unit(plan, piece, &first);
+            const Unit unit = chains.unit(plan, chunk, &first);
             for (std::int64_t i = 0; i < unit.count; ++i) {
                 const Lane lane = lane_of(unit, i);
                 take(lane, lane.chain);
             }
         } else {
             MoleculeLane first;
-            const MoleculeUnit unit = chains.unit(plan, piece, &first);
+            const MoleculeUnit unit = chains.unit(plan, chunk, &first);
             for (std::int64_t i = 0; i < unit.count; ++i) {
                 const MoleculeLane lane = lane_of(unit, i);
                 take(lane, lane.molecule);

@@ -77,6 +77,7 @@ int main() { OpenMM::System system; }' | c++ -x c++ - -lOpenMM -o /dev/null 2>/d
         openblas | mctc-lib) pkg-config --exists "$1" 2>/dev/null ;;
         gromacs-data) [ -e /usr/share/gromacs/top/spc216.gro ] ;;
         flang) present_any flang flang-new flang-22 flang-21 flang-20 flang-new-19 flang-new-18 ;;
+        arm-compiler) command -v aarch64-linux-gnu-g++ >/dev/null ;;
         arm) command -v aarch64-linux-gnu-g++ >/dev/null && command -v qemu-aarch64 >/dev/null ;;
         mingw) present_any x86_64-w64-mingw32-g++-posix x86_64-w64-mingw32-g++ ;;
         wine) present_any wine64 wine || [ -e /usr/lib/wine/wine64 ] ;;
@@ -119,6 +120,7 @@ debian_package() {
         mpfr) echo libmpfr-dev ;;
         libfuzzer) echo clang libclang-rt-dev ;;
         qemu-x86_64) echo qemu-user ;;
+        arm-compiler) echo g++-aarch64-linux-gnu ;;
         arm) echo g++-aarch64-linux-gnu qemu-user ;;
         mingw) echo g++-mingw-w64-x86-64-posix gfortran-mingw-w64-x86-64-posix ;;
         wine) echo wine wine64 ;;

@@ -9,7 +9,8 @@ namespace holonomic {
 namespace {
 
 // Chains that do not fit into lanes are kept as one lane, for right-hand sides that are given; forces are left to the
-// ordinary verb, whose segments are in lanes. Molecules of other shapes are left.
+// ordinary verb, whose segments are in lanes. So are those of large trees that are mostly chains. Molecules of other
+// shapes are left.
 struct KeptWork : Work {
     const Kernels &k = kernels();
     unsigned char *const left;
@@ -17,6 +18,9 @@ struct KeptWork : Work {
     std::int64_t long_blocks(std::int64_t) const override { return 0; }
     std::int64_t long_bytes(std::int64_t n_bonds) const override {
         return kernels_for_one_chain().scratch_bytes(n_bonds);
+    }
+    static bool has_forces_apart(const MoleculeUnit &unit) {
+        return unit.elimination->way.given == Way::sparse_ldl && unit.elimination->way.forces != Way::sparse_ldl;
     }
     bool is_left(const MoleculeUnit &unit) const {
         if (k.kept.is_kept(*unit.elimination)) return false;
@@ -32,7 +36,12 @@ struct KeepWork final : KeptWork {
         kernels(unit).kept.keep_chains(call, unit, scratch, tally);
     }
     void unit(const MoleculeUnit &unit, int, double *scratch, Tally &tally) const override {
-        if (!is_left(unit)) k.kept.keep_molecules(call, unit, scratch, tally);
+        if (is_left(unit)) return;
+        k.kept.keep_molecules(call, unit, scratch, tally);
+        for (std::int64_t i = 0; has_forces_apart(unit) && i < unit.count; ++i) {
+            unsigned char &mark = left[lane_of(unit, i).molecule];
+            if (!mark) mark = left_of_forces;
+        }
     }
     void long_chain(const Lane &lane, int, const Team &, double *store, Tally &tally) const override {
         kernels_for_one_chain().kept.keep_chains(call, {&lane, 1, false, false}, store, tally);
@@ -55,7 +64,8 @@ struct SolveWork final : KeptWork {
         kernels(unit).kept.solve_chains(calls[where], unit, scratch, tally);
     }
     void unit(const MoleculeUnit &unit, int where, double *scratch, Tally &tally) const override {
-        if (k.kept.is_kept(*unit.elimination)) k.kept.solve_molecules(calls[where], unit, scratch, tally);
+        if (!k.kept.is_kept(*unit.elimination) || (!calls[where].rhs && has_forces_apart(unit))) return;
+        k.kept.solve_molecules(calls[where], unit, scratch, tally);
     }
     void long_chain(const Lane &lane, int where, const Team &, double *store, Tally &tally) const override {
         if (calls[where].rhs)

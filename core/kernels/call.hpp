@@ -30,7 +30,7 @@ struct Lane {
     int64_t element[4];  // of chains of at most three bonds: where each atom's first component stands in packed arrays
 };
 
-// A piece of work: chains of at most longest_lane bonds, or a single longer one.
+// A chunk of work: chains of at most longest_lane bonds, or a single longer one.
 struct Unit {
     const Lane *lanes;
     int64_t count;
@@ -63,7 +63,7 @@ struct LongTeam {
                 void (*body)(const void *context, int64_t j, double *scratch, Tally &part), const void *context);
 };
 
-// A piece of work: molecules of one shape; masses and lengths may differ among them. Or batches of trees, whose trees
+// A chunk of work: molecules of one shape; masses and lengths may differ among them. Or batches of trees, whose trees
 // are the lanes, one after the other, none regular: for verbs that work on such, and `elimination` is that of the
 // first.
 struct MoleculeUnit {
@@ -279,6 +279,7 @@ struct KeptKernels {
 struct Kernels {
     const char *name;
     int lanes;
+    bool fused;  // products and sums are rounded once
     int64_t (*scratch_bytes)(int64_t n_bonds);
     int64_t piece_bytes;
     void (*forces)(const ForcesCall &, const Unit &, double *scratch, Tally &);

@@ -65,7 +65,7 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     set_source_files_properties(kernels/verbs/bodies.cpp PROPERTIES COMPILE_OPTIONS -fno-tree-vectorize)
 endif()
 
-option(HOLONOMIC_BASELINE "The kernels that every x86-64 processor runs; OFF for trying changes with one other set (scripts/try)" ON)
+option(HOLONOMIC_BASELINE "The kernels that every x86-64 processor runs; OFF where the library stays on this machine (scripts/demo, scripts/try)" ON)
 option(HOLONOMIC_TEST_SETS "With the tests, kernels of a number of lanes that no set has, in a library for tests alone" OFF)
 set(HOLONOMIC_TEST_LANES "8" CACHE STRING "Their lanes; one, two and four are installed")
 
@@ -100,7 +100,7 @@ set(extended_solvers)
 function(holonomic_kernels name lanes)
     cmake_parse_arguments(PARSE_ARGV 2 set "TESTS_ONLY;CHAINS_ONLY" "EXTENDED;NETWORKS" "FLAGS;TUNING;NEEDS")
     if((set_TESTS_ONLY AND NOT (HOLONOMIC_BUILD_TESTS AND HOLONOMIC_TEST_SETS)) OR
-       (NOT set_TESTS_ONLY AND NOT name IN_LIST HOLONOMIC_INSTRUCTION_SETS AND NOT (name STREQUAL "baseline" AND HOLONOMIC_BASELINE)))
+       (NOT set_TESTS_ONLY AND NOT name IN_LIST HOLONOMIC_INSTRUCTION_SETS AND NOT (name STREQUAL HOLONOMIC_BASELINE_SET AND (HOLONOMIC_BASELINE OR NOT HOLONOMIC_X86_64))))
         return()
     endif()
     set(sources ${chain_kernels} ${other_kernels})
@@ -133,13 +133,23 @@ function(holonomic_kernels name lanes)
 endfunction()
 
 # The sets, the one to be preferred first; run/kernel_choice.cpp has the measurements, and where another runs.
-set(HOLONOMIC_INSTRUCTION_SETS "avx2;avx512vl;scalar" CACHE STRING "Kernels to compile beside those of baseline x86-64")
+set(HOLONOMIC_INSTRUCTION_SETS "avx2;avx512vl;scalar" CACHE STRING "Kernels to compile beside those that every processor of this kind runs")
 set(HOLONOMIC_X86_64 OFF)
+set(HOLONOMIC_AARCH64 OFF)
+set(HOLONOMIC_BASELINE_SET baseline)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$" AND CMAKE_SIZEOF_VOID_P EQUAL 8
    AND CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
     set(HOLONOMIC_X86_64 ON)
+elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "^(aarch64|arm64|ARM64)$" AND CMAKE_SIZEOF_VOID_P EQUAL 8
+       AND CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
+    set(HOLONOMIC_AARCH64 ON)
+    set(HOLONOMIC_BASELINE_SET neon)
 endif()
 set(avx2 -mavx2 -mfma)
+set(fused)
+if(HOLONOMIC_X86_64)
+    set(fused ${avx2})
+endif()
 # gcc copies several vectors of four in halves or in pairs, unless it is told not to, and what then reads one waits for these to
 # be in memory.
 set(whole)
@@ -166,16 +176,22 @@ if(HOLONOMIC_X86_64)
             NEEDS avx2 fma)
     endforeach()
 endif()
-# For x86-64 processors of before 2013, where size counts, and for all others, where it is the only set.
+# What every processor of this kind runs. For x86-64 processors of before 2013 size counts.
 set(small)
 if(HOLONOMIC_X86_64)
     set(small -Os -DHOL_SMALL=1)
 endif()
-holonomic_kernels(baseline 2 EXTENDED double_double FLAGS ${small})
+if(HOLONOMIC_AARCH64)
+    holonomic_kernels(neon 2 EXTENDED double_double_fma)
+else()
+    holonomic_kernels(baseline 2 EXTENDED double_double FLAGS ${small})
+endif()
+# One lane: chains that come alone, beside any of the sets above that fuse products and sums. Pairs of components stored at once
+# and loaded one by one, or the other way round, would wait for each other.
 if(HOLONOMIC_X86_64)
-    # One lane: chains that come alone, beside any of the sets above. Pairs of components stored at once and loaded one by
-    # one, or the other way round, would wait for each other.
     holonomic_kernels(scalar 1 CHAINS_ONLY EXTENDED double_double_fma FLAGS ${avx2} -fno-tree-slp-vectorize NEEDS avx2 fma)
+elseif(HOLONOMIC_AARCH64)
+    holonomic_kernels(scalar 1 CHAINS_ONLY EXTENDED double_double_fma FLAGS -fno-tree-slp-vectorize)
 endif()
 set(HOLONOMIC_KERNEL_SET_NAMES ${set_names} CACHE INTERNAL "")
 
@@ -188,6 +204,6 @@ if("double_double" IN_LIST extended_solvers OR HOLONOMIC_BUILD_TESTS)
     list(APPEND kernel_objects $<TARGET_OBJECTS:holonomic_kernels_double_double>)
 endif()
 if("double_double_fma" IN_LIST extended_solvers)
-    holonomic_kernel_objects(double_double_fma 2 SOURCES ${extended_kernels} FLAGS ${avx2} $<$<CONFIG:Release>:-O2>)
+    holonomic_kernel_objects(double_double_fma 2 SOURCES ${extended_kernels} FLAGS ${fused} $<$<CONFIG:Release>:-O2>)
     list(APPEND kernel_objects $<TARGET_OBJECTS:holonomic_kernels_double_double_fma>)
 endif()

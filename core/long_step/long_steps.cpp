@@ -32,10 +32,10 @@ public:
 
     Tally run() {
         const Plan &plan = chains_.plan();
-        for (const Plan::Piece &piece : plan.pieces) {
-            if (piece.shape == linear) {
+        for (const Plan::Chunk &chunk : plan.chunks) {
+            if (chunk.shape == linear) {
                 Lane first;
-                const Unit unit = chains_.unit(plan, piece, &first);
+                const Unit unit = chains_.unit(plan, chunk, &first);
                 for (std::int64_t i = 0; i < unit.count; ++i) {
                     const Lane lane = lane_of(unit, i);
                     look_at({&lane, nullptr, nullptr, nullptr}, lane.chain);
@@ -43,7 +43,7 @@ public:
                 continue;
             }
             MoleculeLane first;
-            const MoleculeUnit unit = chains_.unit(plan, piece, &first);
+            const MoleculeUnit unit = chains_.unit(plan, chunk, &first);
             const bool mixed = unit.tree_batches && unit.count > 1;
             std::int64_t i = 0;
             for (std::int64_t f = 0; mixed && f < unit.n_batches; ++f)

@@ -96,9 +96,9 @@ public:
     std::int64_t n_chains() const { return groups_.n_molecules(); }
     std::int64_t n_molecules() const;  // with those that have bodies, which come last
     std::int64_t n_bonds() const { return n_bonds_; }
-    std::int64_t n_of_form(int form) const;
-    int form_of(std::int64_t molecule) const;  // a Form, or:
-    static constexpr int form_with_bodies = 5;
+    std::int64_t n_of_topology(int topology) const;
+    int topology_of(std::int64_t molecule) const;  // a Topology, or:
+    static constexpr int topology_with_bodies = 5;
     std::int64_t n_kinds() const;
     void offsets(std::int64_t *out) const;
     std::int64_t count_atoms(std::int64_t molecule) const;  // that `atoms` writes
@@ -151,10 +151,10 @@ public:
     }
     const Plan &plan_of_parts() const;  // likewise; no molecule of it is linear
     // units.cpp
-    Unit unit(const Plan &plan, const Plan::Piece &piece, Lane *lane) const;  // lane: memory for the first of a group
-    MoleculeUnit unit(const Plan &plan, const Plan::Piece &piece, MoleculeLane *lane) const;
-    MoleculeUnit unit_of_group(const Plan &plan, const Plan::Piece &piece, MoleculeLane *lane) const;
-    std::int64_t piece_bonds(const Plan::Piece &piece) const;  // of one molecule of the piece; 0 if loose ones
+    Unit unit(const Plan &plan, const Plan::Chunk &chunk, Lane *lane) const;  // lane: memory for the first of a group
+    MoleculeUnit unit(const Plan &plan, const Plan::Chunk &chunk, MoleculeLane *lane) const;
+    MoleculeUnit unit_of_group(const Plan &plan, const Plan::Chunk &chunk, MoleculeLane *lane) const;
+    std::int64_t chunk_bonds(const Plan::Chunk &chunk) const;  // of one molecule of the chunk; 0 if loose ones
     const std::vector<std::int64_t> &reordered_bonds() const { return groups_.reordered(); }
     const std::vector<std::int64_t> &unconstrained() const { return unconstrained_; }
     // Whether a bond was given from the atom at which it ends here; by its place in the caller's arrays.

@@ -101,7 +101,8 @@ bool is_lowest_of_flat(const Partners &partners, std::int32_t i, double toleranc
 }  // namespace
 
 bool has_dependent_lengths(const holonomic::Shape &shape, const double *w, const double *lengths, double tolerance) {
-    if (shape.form == Form::chain || shape.form == Form::tree || (shape.form == Form::ring && shape.n_bonds > 3))
+    if (shape.topology == Topology::chain || shape.topology == Topology::tree ||
+        (shape.topology == Topology::ring && shape.n_bonds > 3))
         return false;
     const Partners partners(shape, w, lengths);
     std::int64_t steps = steps_for_rings(shape.n_bonds);

@@ -40,6 +40,7 @@ public:
     static std::vector<Number> followers(const Relations &relations, const Leaders &leaders) {
         const std::size_t n = static_cast<std::size_t>(relations.n_atoms), count = leaders.atoms.size();
         std::vector<std::vector<Number>> rows;
+        rows.reserve(static_cast<std::size_t>(relations.count()));
         for (std::int32_t k = 0; k < relations.count(); ++k) rows.push_back(row_of(relations.row(k), n));
         std::vector<Number> of(n * count, 0);
         std::size_t done = 0, leader = 0;

@@ -108,7 +108,8 @@ private:
         BodyResult results[block];
         const std::uint64_t done =
             work_.bodies(unit, reinterpret_cast<double *>(memory_ + bodies_.scratch_bytes()), results);
-        if (done == ~std::uint64_t{0} >> (block - unit.count) && !work_.has_results() && !outcomes_) return next;
+        const std::uint64_t all = unit.count < block ? (std::uint64_t{1} << unit.count) - 1 : ~std::uint64_t{0};
+        if (done == all && !work_.has_results() && !outcomes_) return next;
         for (int l = 0; l < unit.count; ++l) {
             if (!(done >> l & 1)) {
                 molecule(molecules[l]);
@@ -147,7 +148,7 @@ Memory memory_of(const Chains &chains, std::int64_t least = 0) {
     m.n_blocks = (bodies.n_molecules() + block - 1) / block;
     m.scratch = static_cast<char *>(thread_memory(Keep::rigid, m.bytes));
     m.parts =
-        static_cast<Found *>(thread_memory(Keep::piece_tallies, m.n_blocks * static_cast<std::int64_t>(sizeof(Found))));
+        static_cast<Found *>(thread_memory(Keep::chunk_tallies, m.n_blocks * static_cast<std::int64_t>(sizeof(Found))));
     if (!m.scratch || !m.parts) throw std::bad_alloc();
     return m;
 }

@@ -70,21 +70,21 @@ void share(int n_threads, std::int64_t scratch_bytes, std::int64_t store_bytes, 
 // A single molecule whose pieces are shared among the threads: a large one, or one of few, so that not every thread has
 // molecules of its own, or that is more than a thread's part of all bonds.
 bool is_shared_molecule(const Plan &plan, std::int64_t p, int n_threads, bool paths) {
-    const Plan::Piece &piece = plan.pieces[static_cast<std::size_t>(p)];
-    if (piece.shape == linear || piece.count != 1) return false;
-    const EliminationPlan &s = *plan.elimination_plans[static_cast<std::size_t>(piece.shape)];
-    const std::int64_t n = s.n_pieces, n_molecules = static_cast<std::int64_t>(plan.pieces.size());
+    const Plan::Chunk &chunk = plan.chunks[static_cast<std::size_t>(p)];
+    if (chunk.shape == linear || chunk.count != 1) return false;
+    const EliminationPlan &s = *plan.elimination_plans[static_cast<std::size_t>(chunk.shape)];
+    const std::int64_t n = s.n_pieces, n_molecules = static_cast<std::int64_t>(plan.chunks.size());
     const bool large = n_molecules < n_threads || static_cast<std::int64_t>(s.n_bonds) * n_threads > plan.n_bonds;
     if (large && has_shares(s, paths)) return true;
     return n > 1 && (n >= 8 * n_threads || n_molecules < 4 * n_threads);
 }
 #endif
 
-// Bonds of a chain that is worked on in segments, 0 if the piece is none.
+// Bonds of a chain that is worked on in segments, 0 if the chunk is none.
 std::int64_t long_chain_bonds(const Chains &chains, const Plan &plan, std::int64_t p) {
-    const Plan::Piece &piece = plan.pieces[static_cast<std::size_t>(p)];
-    if (piece.shape != linear) return 0;
-    const std::int64_t n = chains.piece_bonds(piece);
+    const Plan::Chunk &chunk = plan.chunks[static_cast<std::size_t>(p)];
+    if (chunk.shape != linear) return 0;
+    const std::int64_t n = chains.chunk_bonds(chunk);
     return n > longest_lane ? n : 0;
 }
 
@@ -173,16 +173,16 @@ __attribute__((always_inline)) inline void in_its_units(const Work &work, const 
     add(tally, own);
 }
 
-// One call: what it needs, and its pieces one by one or shared.
+// One call: what it needs, and its chunks one by one or shared.
 class Execution {
 public:
     Execution(const Chains &chains, const Plan &plan, const Work &work)
         : chains_(chains), plan_(plan), work_(work), outcomes_(chains.keeps_outcomes ? outcomes_under_way() : nullptr),
-          n_pieces_(static_cast<std::int64_t>(plan.pieces.size())),
+          n_chunks_(static_cast<std::int64_t>(plan.chunks.size())),
           scratch_bytes_(std::max(plan.scratch_bytes, work.scratch_bytes())) {
         n_threads_ = static_cast<int>(
             std::min<std::int64_t>(chains.n_threads, std::max<std::int64_t>(plan.n_bonds / bonds_per_thread, 1)));
-        for (std::int64_t p = 0; plan.longest > longest_lane && p < n_pieces_; ++p) {
+        for (std::int64_t p = 0; plan.longest > longest_lane && p < n_chunks_; ++p) {
             const std::int64_t n = long_chain_bonds(chains, plan, p);
             if (n == 0) continue;
             std::int64_t &store = is_shared_chain(n) ? shared_store_ : own_store_;
@@ -198,8 +198,8 @@ public:
 #ifdef _OPENMP
         if (n_threads_ > 1) return run_on_threads(own_scratch, total);
 #endif
-        if (n_pieces_ == 1) return work_on(0, own_scratch, total, nullptr);
-        for (std::int64_t p = 0; p < n_pieces_; ++p) {
+        if (n_chunks_ == 1) return work_on(0, own_scratch, total, nullptr);
+        for (std::int64_t p = 0; p < n_chunks_; ++p) {
             Tally tally = empty_tally();
             work_on(p, own_scratch, tally, nullptr);
             add(total, tally);
@@ -213,24 +213,24 @@ private:
     }
 
     void work_on(std::int64_t p, double *scratch, Tally &tally, const LongTeam *team) const {
-        const Plan::Piece &piece = plan_.pieces[static_cast<std::size_t>(p)];
-        if (piece.shape != linear) {
+        const Plan::Chunk &chunk = plan_.chunks[static_cast<std::size_t>(p)];
+        if (chunk.shape != linear) {
             MoleculeLane lane;
-            MoleculeUnit unit = chains_.unit(plan_, piece, &lane);
+            MoleculeUnit unit = chains_.unit(plan_, chunk, &lane);
             unit.team = team;
-            if (outcomes_) return work_on_each(unit, piece.where, scratch, tally);
-            return in_its_units(work_, unit, piece.where, scratch, tally,
-                                [&](Tally &own) { work_on_molecules(work_, unit, piece.where, scratch, own); });
+            if (outcomes_) return work_on_each(unit, chunk.where, scratch, tally);
+            return in_its_units(work_, unit, chunk.where, scratch, tally,
+                                [&](Tally &own) { work_on_molecules(work_, unit, chunk.where, scratch, own); });
         }
         Lane lane;
-        const Unit unit = chains_.unit(plan_, piece, &lane);
+        const Unit unit = chains_.unit(plan_, chunk, &lane);
         if (unit.lanes[0].n_bonds > longest_lane)
-            work_on_long_chain(unit.lanes[0], piece.where, Team(1, scratch_bytes_), store_memory(own_store_), tally);
+            work_on_long_chain(unit.lanes[0], chunk.where, Team(1, scratch_bytes_), store_memory(own_store_), tally);
         else if (outcomes_)
-            work_on_each(unit, piece.where, scratch, tally);
+            work_on_each(unit, chunk.where, scratch, tally);
         else
-            in_its_units(work_, unit, piece.where, scratch, tally,
-                         [&](Tally &own) { work_.unit(unit, piece.where, scratch, own); });
+            in_its_units(work_, unit, chunk.where, scratch, tally,
+                         [&](Tally &own) { work_.unit(unit, chunk.where, scratch, own); });
     }
 
     void work_on_long_chain(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const {
@@ -287,29 +287,29 @@ private:
         return n > 0 && is_shared_chain(n);
     }
 
-    // What is shared comes last, one piece after the other.
+    // What is shared comes last, one chunk after the other.
     void run_on_threads(double *own_scratch, Tally &total) const {
-        Tally *const parts = tallies(Keep::piece_tallies, n_pieces_);
-        share(n_threads_, scratch_bytes_, own_store_, n_pieces_, Team::forwards, [&](std::int64_t p, double *scratch) {
+        Tally *const parts = tallies(Keep::chunk_tallies, n_chunks_);
+        share(n_threads_, scratch_bytes_, own_store_, n_chunks_, Team::forwards, [&](std::int64_t p, double *scratch) {
             Tally tally = empty_tally();
             if (!is_shared(p)) work_on(p, scratch, tally, nullptr);
             parts[p] = tally;
         });
         const Team team(n_threads_, scratch_bytes_);
         const LongTeam lent = team.lent();
-        for (std::int64_t p = 0; p < n_pieces_; ++p) {
+        for (std::int64_t p = 0; p < n_chunks_; ++p) {
             if (!is_shared(p)) continue;
-            const Plan::Piece &piece = plan_.pieces[static_cast<std::size_t>(p)];
-            if (piece.shape != linear) {
+            const Plan::Chunk &chunk = plan_.chunks[static_cast<std::size_t>(p)];
+            if (chunk.shape != linear) {
                 parts[p] = empty_tally();
                 work_on(p, own_scratch, parts[p], &lent);
                 continue;
             }
             Lane lane;
-            work_on_long_chain(chains_.unit(plan_, piece, &lane).lanes[0], piece.where, team,
+            work_on_long_chain(chains_.unit(plan_, chunk, &lane).lanes[0], chunk.where, team,
                                store_memory(shared_store_), parts[p]);
         }
-        for (std::int64_t p = 0; p < n_pieces_; ++p) add(total, parts[p]);
+        for (std::int64_t p = 0; p < n_chunks_; ++p) add(total, parts[p]);
     }
 #endif
 
@@ -317,7 +317,7 @@ private:
     const Plan &plan_;
     const Work &work_;
     OutcomeOf *const outcomes_;
-    std::int64_t n_pieces_, scratch_bytes_;
+    std::int64_t n_chunks_, scratch_bytes_;
     int n_threads_;
     std::int64_t own_store_ = 0, shared_store_ = 0;  // bytes kept between the phases of long chains
 };

@@ -100,8 +100,8 @@ inline Tally execute(const Chains &chains, const AnyWork &work) {
         double *const scratch = scratch_of_this_thread(plan.scratch_bytes);
         std::int64_t bad[most_listed];
         tally.bad = bad;
-        work.unit(plan.only, plan.pieces[0].where, scratch, tally);
-        if (tally.n_bad > 0) work_again(work, plan.only, plan.pieces[0].where, scratch, tally);
+        work.unit(plan.only, plan.chunks[0].where, scratch, tally);
+        if (tally.n_bad > 0) work_again(work, plan.only, plan.chunks[0].where, scratch, tally);
     }
     return tally;
 }

@@ -1,8 +1,9 @@
-// Which kernels run. All but the baseline's fuse multiplication and addition, and give the same bits for a chain that
-// fits into a lane (tests/lanes/same_bits.sh), so that a call may choose by what it has to do. A chain that comes alone
-// takes one lane (`scalar`; docs/performance.md), from two on they are faster side by side. Four lanes with the 32
-// registers of AVX-512 (`avx512vl`) run wherever they can: beside avx2 they were faster or as fast. Eight lanes were
-// slower on AMD's family 25 in all scenes but one, and are no set any more (docs/development/trials.md).
+// Which kernels run. All but those of `baseline` fuse multiplication and addition, and give the same bits for a chain
+// that fits into a lane (tests/lanes/same_bits.sh), so that a call may choose by what it has to do. A chain that comes
+// alone takes one lane (`scalar`; docs/performance.md), from two on they are faster side by side. Four lanes with the
+// 32 registers of AVX-512 (`avx512vl`) run wherever they can: beside avx2 they were faster or as fast. Eight lanes were
+// slower on AMD's family 25 in all scenes but one, and are no set any more (docs/development/trials.md). On 64-bit Arm
+// there is one set, `neon`, beside `scalar`.
 //
 // ns per bond: lambda and G from r, v, f / velocities / positions; equal masses, packed arrays, one thread, AMD family
 // 25 (Zen 4).
@@ -58,7 +59,7 @@ struct Sets {
             best = forced;
             one_lane = nullptr;
         }
-        if (best->lanes < 4) one_lane = nullptr;  // the baseline rounds products: other bits
+        if (one_lane && best && best->fused != one_lane->fused) one_lane = nullptr;  // other bits
     }
 
     void consider(const Kernels &set, bool installed) {

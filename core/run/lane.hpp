@@ -1,4 +1,4 @@
-// The lanes of a piece of work one by one, for work that is not done in lanes.
+// The lanes of a chunk of work one by one, for work that is not done in lanes.
 #pragma once
 
 #include <cstdint>

@@ -27,7 +27,12 @@ double unwritten_value() {
     return value;
 }
 
-bool same_bits(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+std::uint64_t bits_of(double value) {
+    std::uint64_t bits;
+    std::memcpy(&bits, &value, sizeof bits);
+    return bits;
+}
+bool same_bits(double a, double b) { return bits_of(a) == bits_of(b); }
 
 bool overflows(double value, int e, bool is_float) {
     const double scaled = std::scalbn(value, e);

@@ -8,7 +8,7 @@ namespace holonomic {
 enum class Keep {
     scratch,
     store,
-    piece_tallies,
+    chunk_tallies,
     block_tallies,
     apart,
     right_hand_sides,

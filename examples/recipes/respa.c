@@ -2,6 +2,8 @@
  * r-RESPA with two force groups: stiff springs that tether atoms, in every step, and a slow field, in every fourth one.
  * Each group's kick is that of its forces and of the constraint forces that belong to them, so where both act there are
  * two right-hand sides at one configuration. With factors that are kept the matrix is eliminated once for the two.
+ * The gain is small: an update costs about one hol_forces and each of the four solves of such a step about two thirds
+ * of one, 3.7 in place of 4, and the three steps between have one group alone. Many right-hand sides gain more.
  */
 #include <string.h>
 #include <time.h>

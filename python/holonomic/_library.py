@@ -175,5 +175,5 @@ def version() -> str:
 
 
 def instruction_set() -> str:
-    """The instruction set that the calculations use on this machine: "baseline", "avx2" or "avx512vl"."""
+    """The instruction set that the calculations use on this machine: "baseline", "avx2" or "avx512vl"; on 64-bit Arm "neon"."""
     return library.hol_instruction_set().decode()

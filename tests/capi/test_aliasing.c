@@ -97,7 +97,8 @@ static void check(const mixture *m)
     }
 }
 
-/** Alone, with others like it, and among other atoms; of large molecules one other is enough, and under slow tools the last alone. */
+/** Alone, with others like it, and among other atoms; of large molecules one other is enough, and under slow tools the
+ * last alone. */
 static void check_molecule(molecule m)
 {
     molecule parts[5] = {m, m, m, m, m};

@@ -69,8 +69,8 @@ static void forces_agree_with_a_dense_solution_for_molecules_of_every_shape(void
         assert_solution(&m, NULL, m.f);
         mixture_free(&m);
     }
-    static const molecule_kind kinds[] = {MOLECULE_TREE, MOLECULE_RING, MOLECULE_TRIANGLES,
-                                          MOLECULE_COMB, MOLECULE_STAR, MOLECULE_CHAIN};
+    static const molecule_kind kinds[] = {MOLECULE_TREE, MOLECULE_RING,  MOLECULE_TRIANGLES, MOLECULE_COMB,
+                                          MOLECULE_STAR, MOLECULE_CHAIN, MOLECULE_PEPTIDE,   MOLECULE_FUSED_RINGS};
     for (size_t k = 0; k < sizeof kinds / sizeof *kinds; ++k) {
         mixture m = mixture_of_kind(kinds[k], quick_run() ? 12 : 60, 3, 14, MIXED, 200 + k);
         assert_solution(&m, m.v, m.f);
@@ -82,7 +82,8 @@ static void forces_agree_with_a_dense_solution_for_molecules_of_every_shape(void
 static void uneven_forces_agree_with_a_dense_solution(void **state)
 {
     (void)state;
-    static const molecule_kind kinds[] = {MOLECULE_TREE, MOLECULE_RING, MOLECULE_COMB, MOLECULE_STAR, MOLECULE_CHAIN};
+    static const molecule_kind kinds[] = {MOLECULE_TREE,  MOLECULE_RING,    MOLECULE_COMB,       MOLECULE_STAR,
+                                          MOLECULE_CHAIN, MOLECULE_PEPTIDE, MOLECULE_FUSED_RINGS};
     random_stream stream = random_seed(12);
     for (size_t k = 0; k < sizeof kinds / sizeof *kinds; ++k)
         for (int size = 3; size < 30; size = size * 3 + 1) {
@@ -105,7 +106,8 @@ static void uneven_right_hand_sides_agree_with_a_dense_solution(void **state)
 {
     (void)state;
     enum { SIDES = 4 };
-    static const molecule_kind kinds[] = {MOLECULE_TREE, MOLECULE_RING, MOLECULE_COMB, MOLECULE_STAR, MOLECULE_CHAIN};
+    static const molecule_kind kinds[] = {MOLECULE_TREE,  MOLECULE_RING,    MOLECULE_COMB,       MOLECULE_STAR,
+                                          MOLECULE_CHAIN, MOLECULE_PEPTIDE, MOLECULE_FUSED_RINGS};
     random_stream stream = random_seed(11);
     for (size_t k = 0; k < sizeof kinds / sizeof *kinds; ++k)
         for (int size = 3; size < 30; size = size * 3 + 1) {
@@ -176,6 +178,42 @@ static void chains_agree_with_hol_forces(void **state)
                 hol_factors_destroy(factors);
                 assembly_free(&a);
             }
+}
+
+/** Molecules too large for lanes, by sparse LDL^T and as large trees, beside hol_forces and hol_solve. */
+static void large_molecules_agree_with_hol_forces(void **state)
+{
+    (void)state;
+    static const molecule_kind kinds[] = {MOLECULE_PEPTIDE, MOLECULE_FUSED_RINGS, MOLECULE_COMB};
+    static const int64_t sizes[] = {60, 120, 1100};
+    random_stream stream = random_seed(13);
+    for (int k = 0; k < 3; ++k)
+        for (int how = 0; how < 2; ++how) {
+            mixture m = mixture_of_kind(kinds[k], 2, sizes[k], sizes[k], (mixing)how, 500 + (uint64_t)k);
+            const size_t bonds = (size_t)m.n_bonds;
+            double *rhs = untouched(bonds), *lambda[2], *g[2], largest;
+            for (int i = 0; i < 2; ++i) lambda[i] = untouched(bonds), g[i] = untouched(mixture_size(&m));
+            for (size_t b = 0; b < bonds; ++b) rhs[b] = random_normal(&stream);
+            hol_factors *factors = factors_at(m.chains, m.r);
+            for (int what = 0; what < 3; ++what) {
+                const double *v = what == 1 ? m.v : NULL;
+                if (what == 2) {
+                    CHECK(hol_solve(m.chains, m.r, rhs, lambda[0], g[0], HOL_WRITE, NULL));
+                    CHECK(hol_factors_solve(factors, 1, rhs, lambda[1], g[1], HOL_WRITE, NULL));
+                } else {
+                    CHECK(hol_forces(m.chains, m.r, v, m.f, lambda[0], NULL, g[0], HOL_WRITE, NULL));
+                    CHECK(hol_factors_forces(factors, v, m.f, lambda[1], NULL, g[1], HOL_WRITE, NULL));
+                }
+                largest = 0;
+                for (size_t b = 0; b < bonds; ++b) largest = fmax(largest, fabs(lambda[0][b]));
+                assert_true(largest > 0);
+                for (size_t b = 0; b < bonds; ++b) CHECK_AT_MOST(fabs(lambda[1][b] - lambda[0][b]), 1e-12 * largest);
+            }
+            hol_factors_destroy(factors);
+            free(rhs);
+            for (int i = 0; i < 2; ++i) free(lambda[i]), free(g[i]);
+            mixture_free(&m);
+        }
 }
 
 /** Several right-hand sides at once, in place, added, and with what changes beside them. */
@@ -307,6 +345,7 @@ int main(void)
         cmocka_unit_test(uneven_forces_agree_with_a_dense_solution),
         cmocka_unit_test(uneven_right_hand_sides_agree_with_a_dense_solution),
         cmocka_unit_test(chains_agree_with_hol_forces),
+        cmocka_unit_test(large_molecules_agree_with_hol_forces),
         cmocka_unit_test(right_hand_sides_are_solved_as_by_hol_solve),
         cmocka_unit_test(forces_may_replace_the_applied_ones_or_be_added_in_any_layout),
         cmocka_unit_test(factors_belong_to_the_set_and_positions_of_the_update),

@@ -26,5 +26,5 @@ mapfile -t files < <(find core/kernels -name '*.cpp')
 # shellcheck disable=SC2086
 printf '%s\n' "${files[@]}" | xargs -P "$(getconf _NPROCESSORS_ONLN 2>/dev/null || echo 2)" -I{} $clang -target arm64-apple-macos12 $flags \
     -Wconversion -Wno-psabi -Wno-unknown-warning-option -isystem "$temporary" -std=c++17 -ffp-contract=off \
-    -DHOL_ISA=baseline -DHOL_LANES=2 -DHOL_EXTENDED=double_double {} || { echo "arm64-apple-macos12: the kernels"; exit 1; }
+    -DHOL_ISA=neon -DHOL_LANES=2 -DHOL_EXTENDED=double_double_fma {} || { echo "arm64-apple-macos12: the kernels"; exit 1; }
 echo "arm64-apple-macos12: ${#files[@]} files of kernels"

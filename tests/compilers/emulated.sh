@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Builds for another processor with the distribution's cross compiler and runs the tests of the C interface, the reference
-# cases, the fuzzing corpus and some hostile chains under emulation.
+# cases, the fuzzing corpus and some hostile chains under emulation. On aarch64 it sees, too, that the kernels are those for its
+# vectors, and that chains that come alone get the same bits from theirs.
 #
 #   emulated.sh PROCESSOR BUILD_DIRECTORY [cases]
 #       PROCESSOR  aarch64, s390x (big-endian) or i686 (32 bits)        cases: the library and the reference cases alone
@@ -26,7 +27,7 @@ cmake -S "$top" -B "$build" -DCMAKE_BUILD_TYPE=Release -DCMAKE_SYSTEM_NAME=Linux
     -DHOLONOMIC_BUILD_FORTRAN=OFF -DHOLONOMIC_BUILD_TESTS=ON -DHOLONOMIC_TESTS_WITHOUT_CMOCKA=ON >"$build/log" 2>&1 ||
     { tail -n 20 "$build/log"; exit 1; }
 targets=(check_oracle instruction_set)
-[ "$cases" ] || targets+=(stress fuzz_replay layout_c layout_cpp test_boundary test_exceptions capi_tests)
+[ "$cases" ] || targets+=(stress fuzz_replay layout_c layout_cpp test_boundary test_exceptions capi_tests digest)
 cmake --build "$build" -j "${JOBS:-2}" --target holonomic "${targets[@]}" >"$build/log" 2>&1 ||
     { grep -E 'error|undefined' "$build/log" | head -n 20; tail -n 5 "$build/log"; exit 1; }
 run() { "$qemu" -L "$root" "$@"; }
@@ -35,12 +36,30 @@ loader=$root/lib/ld-linux.so.2
 if [ "$processor" = i686 ] && "$loader" --version >/dev/null 2>&1; then
     run() { "$loader" --library-path "$root/lib:$build/capi" "$@"; }
 fi
-run "$build/tests/compilers/instruction_set" || exit 1
+set=$(run "$build/tests/compilers/instruction_set") || exit 1
+echo "kernels: $set"
+if [ "$processor" = aarch64 ]; then
+    [ "$set" = neon ] || { echo "these are not the ones for its vectors"; exit 1; }
+    # Two doubles at once: what the compiler makes of the vectors, too.
+    fused=$("$target-objdump" -d --no-show-raw-insn "$build/capi/libholonomic.so" | awk '
+        /^[0-9a-f]+ </ { neon = /holonomic4neon/ }
+        neon && $2 == "fmla" && /v[0-9]+\.2d/ { ++n }
+        END { print n + 0 }')
+    echo "fmla of two doubles: $fused"
+    [ "$fused" -gt 5000 ] || { echo "the kernels are not in lanes"; exit 1; }
+fi
 for folder in oracle oracle/molecules oracle/rigid; do
     run "$build/tests/reference/check_oracle" "$top/tests/$folder" >"$build/output" || { tail "$build/output"; exit 1; }
     echo "$folder: $(tail -n 1 "$build/output")"
 done
 [ -z "$cases" ] || exit 0
+if [ "$processor" = aarch64 ]; then
+    for set in neon scalar; do
+        HOLONOMIC_ISA=$set run "$build/tests/lanes/digest" 64 1 >"$build/digest.$set" || { echo "digest, $set"; exit 1; }
+    done
+    cmp "$build/digest.neon" "$build/digest.scalar" || exit 1
+    echo "neon and scalar: the same bits in $(wc -l <"$build/digest.neon") scenes"
+fi
 for program in abi/layout_c abi/layout_cpp faults/test_boundary faults/test_exceptions; do
     run "$build/tests/$program" >"$build/output" 2>&1 || { echo "$program"; tail -n 5 "$build/output"; exit 1; }
     tail -n 1 "$build/output"

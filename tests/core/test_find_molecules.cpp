@@ -12,11 +12,11 @@
 using holonomic::BondList;
 using holonomic::Error;
 using holonomic::find_molecules;
-using holonomic::Form;
 using holonomic::FoundMolecule;
 using holonomic::FoundMolecules;
 using holonomic::Masses;
 using holonomic::Status;
+using holonomic::Topology;
 using Bonds = std::vector<std::pair<std::int64_t, std::int64_t>>;
 
 namespace
@@ -88,23 +88,23 @@ void forms_are_recognised()
         Bonds bonds;
         std::int64_t n_atoms;
         std::vector<std::int64_t> fixed;
-        Form form;
+        Topology topology;
     } cases[] = {
-        {"bond", {{1, 0}}, 2, {}, Form::chain},
-        {"bond to a fixed atom", {{1, 0}}, 2, {1}, Form::chain},
-        {"chain", chain(5), 6, {}, Form::chain},
-        {"chain out of order", {{3, 0}, {2, 1}, {1, 3}}, 4, {}, Form::chain},
-        {"star", {{0, 1}, {0, 2}, {0, 3}}, 4, {}, Form::tree},
-        {"star on fixed atoms", {{0, 1}, {0, 2}, {0, 3}}, 4, {1, 2, 3}, Form::tree},
-        {"triangle", ring(3), 3, {}, Form::triangle},
-        {"triangle through a fixed atom", ring(3), 3, {1}, Form::chain},
-        {"ring", ring(4), 4, {}, Form::ring},
-        {"large ring", ring(1000), 1000, {}, Form::ring},
-        {"ring through a fixed atom", ring(7), 7, {0}, Form::chain},
-        {"lasso", joined(ring(4), {{0, 4}}), 5, {}, Form::other},
-        {"ring with a fixed neighbour", joined(ring(4), {{0, 4}}), 5, {4}, Form::other},
-        {"two triangles on one atom", {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {3, 4}, {4, 0}}, 5, {}, Form::other},
-        {"tetrahedron", complete(4), 4, {}, Form::other},
+        {"bond", {{1, 0}}, 2, {}, Topology::chain},
+        {"bond to a fixed atom", {{1, 0}}, 2, {1}, Topology::chain},
+        {"chain", chain(5), 6, {}, Topology::chain},
+        {"chain out of order", {{3, 0}, {2, 1}, {1, 3}}, 4, {}, Topology::chain},
+        {"star", {{0, 1}, {0, 2}, {0, 3}}, 4, {}, Topology::tree},
+        {"star on fixed atoms", {{0, 1}, {0, 2}, {0, 3}}, 4, {1, 2, 3}, Topology::tree},
+        {"triangle", ring(3), 3, {}, Topology::triangle},
+        {"triangle through a fixed atom", ring(3), 3, {1}, Topology::chain},
+        {"ring", ring(4), 4, {}, Topology::ring},
+        {"large ring", ring(1000), 1000, {}, Topology::ring},
+        {"ring through a fixed atom", ring(7), 7, {0}, Topology::chain},
+        {"lasso", joined(ring(4), {{0, 4}}), 5, {}, Topology::other},
+        {"ring with a fixed neighbour", joined(ring(4), {{0, 4}}), 5, {4}, Topology::other},
+        {"two triangles on one atom", {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {3, 4}, {4, 0}}, 5, {}, Topology::other},
+        {"tetrahedron", complete(4), 4, {}, Topology::other},
     };
     for (const auto &c : cases) {
         current = c.name;
@@ -115,7 +115,7 @@ void forms_are_recognised()
             for (auto &b : bonds)
                 if (random() % 2) std::swap(b.first, b.second);
             const FoundMolecules f = found_in(bonds, c.n_atoms, c.fixed);
-            require(f.molecules.size() == 1 && f.molecules[0].form == c.form, "another form");
+            require(f.molecules.size() == 1 && f.molecules[0].topology == c.topology, "another topology");
             require(f.bonds.size() == bonds.size() && f.unconstrained.empty(), "bonds are missing");
         }
     }
@@ -190,7 +190,7 @@ void numbers_of_large_lists_are_right()
         std::int64_t last = -1;
         for (const FoundMolecule &m : f.molecules) {
             const auto begin = f.atoms.begin() + m.first_atom, end = begin + m.n_atoms;
-            require(m.form == Form::chain && m.n_bonds == 10, "not a chain of ten bonds");
+            require(m.topology == Topology::chain && m.n_bonds == 10, "not a chain of ten bonds");
             require(*begin < *(end - 1), "the higher end comes first");
             const std::int64_t lowest = *std::min_element(begin, end);
             require(lowest > last, "not in the order of their lowest atoms");

@@ -19,6 +19,9 @@ words='
 [Dd]oubtful           flagged
 [Ff]aint              cancelling
 [Tt]orn               overcorrected
+[Pp]ieces?.of.work    chunk
+Plan::Piece           Plan::Chunk
+Form::(chain|tree)     Topology
 '
 status=0
 while read -r word now; do

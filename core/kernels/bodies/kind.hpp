@@ -1,3 +1,5 @@
+// What a kernel knows of a rigid body that stands alone. Plain data, the same for every instruction set; core/rigid
+// makes it.
 #pragma once
 
 #include <stdint.h>

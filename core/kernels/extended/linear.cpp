@@ -1,4 +1,6 @@
-// Forces, velocities and given right-hand sides of one molecule.
+// Forces, velocities and given right-hand sides of one molecule of any shape, in twice the precision: A t = b
+// (theory (51)). Terms b are exact products of the caller's numbers; solution.hpp loads, solves and writes. For
+// molecules at which plain products have lost too much, and those of no other way.
 #include "core/kernels/extended/solution.hpp"
 #include "core/kernels/extended/verbs.hpp"
 

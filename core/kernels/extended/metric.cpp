@@ -1,4 +1,5 @@
-// Metric determinant and Fixman force of one molecule (theory (60)-(62)).
+// Metric determinant and Fixman force of one molecule of any shape, in twice the precision (theory (60)-(62)): those
+// with cycles other than bare rings, and those at which plain products have lost too much.
 #include "core/kernels/extended/logarithms.hpp"
 #include "core/kernels/extended/neighbours.hpp"
 #include "core/kernels/extended/solution.hpp"

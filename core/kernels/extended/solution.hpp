@@ -1,4 +1,5 @@
-// Loads a molecule, solves it, and writes its outputs at every level.
+// One molecule in twice the precision: loads it, solves its equations (system.hpp) and writes its outputs, for every
+// level. Lengths and masses are in units of the molecule's own, so that no product over- or underflows.
 #pragma once
 
 #include "core/kernels/extended/system.hpp"

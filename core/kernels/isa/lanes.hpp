@@ -85,6 +85,13 @@ HOL_INLINE vec sqrt(vec a) { return {__builtin_sqrt(a.element)}; }
 }  // namespace holonomic::HOL_ISA
 #endif
 
+// Two lanes by the instructions of 64-bit Arm.
+#if HOL_LANES == 2 && defined(__aarch64__)
+#define HOL_NEON 1
+#else
+#define HOL_NEON 0
+#endif
+
 namespace holonomic::HOL_ISA {
 
 constexpr int W = HOL_LANES;
@@ -101,7 +108,11 @@ HOL_INLINE vec as_vec(mask a) { return reinterpret_cast<vec>(a); }
 HOL_INLINE mask less(vec a, vec b) { return reinterpret_cast<mask>(a < b); }
 HOL_INLINE mask less_equal(vec a, vec b) { return reinterpret_cast<mask>(a <= b); }
 HOL_INLINE mask equal(vec a, vec b) { return reinterpret_cast<mask>(a == b); }
+#if HOL_NEON
+HOL_INLINE vec select(mask m, vec a, vec b) { return vbslq_f64(reinterpret_cast<uint64x2_t>(m), a, b); }
+#else
 HOL_INLINE vec select(mask m, vec a, vec b) { return as_vec((m & as_mask(a)) | (~m & as_mask(b))); }
+#endif
 HOL_INLINE vec keep(mask m, vec a) { return as_vec(m & as_mask(a)); }  // a where m, else zero
 HOL_INLINE vec abs(vec a) { return as_vec(as_mask(a) & (mask{} + 0x7fffffffffffffffLL)); }
 #endif
@@ -164,7 +175,13 @@ HOL_INLINE void transpose(quad *m) {
     m[3] = _mm256_permute2f128_pd(b, d, 0x31);
 }
 #endif
-#if HOL_LANES != 4 || !defined(__AVX2__)
+#if HOL_NEON
+HOL_INLINE void transpose(vec *m) {
+    const vec a = vzip1q_f64(m[0], m[1]), b = vzip2q_f64(m[0], m[1]);
+    m[0] = a;
+    m[1] = b;
+}
+#elif HOL_LANES != 4 || !defined(__AVX2__)
 HOL_INLINE void transpose(vec *m) {
     for (int i = 0; i < W; ++i)
         for (int j = i + 1; j < W; ++j) {
@@ -185,14 +202,27 @@ HOL_INLINE vec min(vec a, vec b) { return _mm256_min_pd(a, b); }
 HOL_INLINE vec sqrt(vec a) { return _mm256_sqrt_pd(a); }
 HOL_INLINE vec round(vec a) { return _mm256_round_pd(a, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC); }
 HOL_INLINE unsigned bits(mask m) { return static_cast<unsigned>(_mm256_movemask_pd(as_vec(m))); }
+#elif HOL_NEON
+HOL_INLINE vec mul_add(vec a, vec b, vec c) { return vfmaq_f64(c, a, b); }
+HOL_INLINE vec mul_sub(vec a, vec b, vec c) { return vfmaq_f64(-c, a, b); }
+HOL_INLINE vec sub_mul(vec a, vec b, vec c) { return vfmsq_f64(c, a, b); }
+HOL_INLINE vec max(vec a, vec b) { return select(less(b, a), a, b); }  // b where one is NaN, which vmaxq_f64() has not
+HOL_INLINE vec min(vec a, vec b) { return select(less(a, b), a, b); }
+HOL_INLINE vec sqrt(vec a) { return vsqrtq_f64(a); }
+HOL_INLINE vec round(vec a) { return vrndnq_f64(a); }
+HOL_INLINE unsigned long long sign_words(mask m) {  // the upper halves of the lanes
+    return vget_lane_u64(vreinterpret_u64_u32(vshrn_n_u64(reinterpret_cast<uint64x2_t>(m), 32)), 0);
+}
+HOL_INLINE unsigned bits(mask m) {
+    const unsigned long long signs = sign_words(m);
+    return static_cast<unsigned>((signs >> 31 & 1) | (signs >> 62 & 2));
+}
 #else
 // Any number of lanes on any processor: what the compiler makes of the vectors.
 
 // One rounding or two, as for a double: results of a set must not depend on where a bond is worked on.
 HOL_INLINE vec mul_add(vec a, vec b, vec c) {
-#if defined(__aarch64__) && HOL_LANES == 2
-    return vfmaq_f64(c, a, b);
-#elif HOL_LANES % 4 == 0 && defined(__AVX2__) && HOL_HAS_FMA  // in pieces: element by element takes minutes to compile
+#if HOL_LANES % 4 == 0 && defined(__AVX2__) && HOL_HAS_FMA  // in pieces: element by element takes minutes to compile
     vec r{};
     for (int i = 0; i < W / 4; ++i)
         reinterpret_cast<__m256d *>(&r)[i] =
@@ -253,7 +283,11 @@ HOL_INLINE four round(four a) { return _mm256_round_pd(a, _MM_FROUND_TO_NEAREST_
 #endif
 
 // The sign bits of a mask tell.
+#if HOL_NEON
+HOL_INLINE bool any(mask m) { return (sign_words(m) & 0x8000000080000000ULL) != 0; }
+#else
 HOL_INLINE bool any(mask m) { return bits(m) != 0; }
+#endif
 HOL_INLINE mask finite(vec a) { return equal(a - a, vec{}); }
 HOL_INLINE mask none() { return mask{}; }
 HOL_INLINE mask all_if(bool which) { return mask{} - (which ? 1 : 0); }

@@ -1,4 +1,7 @@
-// Trees and rings in lanes, and triangles: their elimination kept, and solves with it.
+// Kept factors of trees, rings, stars and triangles in lanes, and of molecules by sparse LDL^T: the elimination of
+// forces is kept, and right-hand sides are solved for with it. Blocks that are flagged keep nothing, and go the
+// ordinary way (flagged.hpp).
+#include "core/kernels/kept/ldl.hpp"
 #include "core/kernels/kept/stars.hpp"
 #include "core/kernels/kept/trees.hpp"
 #include "core/kernels/kept/triangles.hpp"
@@ -10,7 +13,8 @@ namespace holonomic::HOL_ISA {
 using namespace graph;
 
 bool is_kept(const EliminationPlan &s) {
-    return s.way.given == Way::triangle || (!s.alone && (s.way.given == Way::tree || s.way.given == Way::ring));
+    return s.way.given == Way::triangle || s.way.given == Way::sparse_ldl ||
+           (!s.alone && (s.way.given == Way::tree || s.way.given == Way::ring));
 }
 
 // Four bonds are kept as a tree.
@@ -172,6 +176,10 @@ void keep_molecules(const KeepCall &call, const MoleculeUnit &unit, double *scra
     if (unit.elimination->way.given == Way::triangle)
         return for_each_triangle(KeepTriangles(call), unit, true, scratch);
     NextMolecules ahead;
+    if (unit.elimination->way.given == Way::sparse_ldl) {
+        KeepByLdl work = {call, unit};
+        return for_each_block(unit, scratch, ahead, work);
+    }
     if (is_star(*unit.elimination) && do_stars<3>(KeepStars{call}, LeaveStars{call.left, ahead}, unit, scratch)) return;
     KeepTrees work = {call, *unit.elimination};
     for_each_block(unit, scratch, ahead, work);
@@ -181,6 +189,10 @@ void solve_kept_molecules(const KeptCall &call, const MoleculeUnit &unit, double
     if (unit.elimination->way.given == Way::triangle)
         return for_each_triangle(SolveTriangles(call, tally), unit, true, scratch);
     NextMolecules ahead;
+    if (unit.elimination->way.given == Way::sparse_ldl) {
+        SolveByLdl work = {call, unit, tally};
+        return for_each_block(unit, scratch, ahead, work);
+    }
     const ForcesCall forces = {call.r,       call.v,   call.f,      call.g,  call.lambda,
                                call.tension, call.add, call.virial, call.box};
     if (is_star(*unit.elimination) && do_stars<3>(SolveStars{call, forces, tally},

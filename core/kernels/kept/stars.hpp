@@ -1,4 +1,5 @@
-// Kept factors of stars of three bonds, in registers: star/linear.hpp has the equations.
+// Kept factors of stars of three bonds, CH3 and NH3, in registers: bonds and S^-1 (theory (52)) are kept.
+// star/linear.hpp has the equations and the test that plain products will do.
 #pragma once
 
 #include "core/kernels/kept/flagged.hpp"

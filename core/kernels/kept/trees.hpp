@@ -26,7 +26,8 @@ struct KeptWay {
     }
 };
 
-// A solve of a block. In molecules that go in lanes the children of a slot are slots that follow each other.
+// A solve of a block. In molecules that go in lanes the children of a slot are slots that
+// follow each other.
 template <class V>
 struct KeptTreesSolve {
     const EliminationPlan &s;
@@ -43,6 +44,11 @@ struct KeptTreesSolve {
           flagged(reinterpret_cast<int32_t *>(memory.values(plan.n_atoms))), per_cancelled2(cancelled) {}
 
     int children(int32_t slot) const { return s.child_start[slot + 1] - s.child_start[slot]; }
+    // Where the places of a slot's children begin, of which it has some: those of trees stand in the order of the slots
+    // above them, those of a ring's atoms do not.
+    int32_t first_child(int32_t slot) const {
+        return slot < s.n_tree ? s.child_start[slot] : s.child[s.child_start[slot]];
+    }
     // Which bond of a ring is before the one in a slot.
     int32_t before(int32_t slot) const { return slot == s.n_tree ? s.n_bonds - 1 : slot - 1; }
 
@@ -96,7 +102,7 @@ struct KeptTreesSolve {
     // Looks again at the bonds of atoms at which one may be cancelling. Returns the lanes in which none is.
     inline __attribute__((noinline)) unsigned look_again(Molecules<V> x, int32_t n) const {
         for (int32_t i = 0; i < n; ++i) {
-            const int32_t slot = flagged[i], k = children(slot), first = s.child_start[slot];
+            const int32_t slot = flagged[i], k = children(slot), first = k > 0 ? first_child(slot) : 0;
             const bool of_ring = slot >= s.n_tree;
             const V shared = shared_error(slot);
             for (int32_t a = of_ring ? -2 : -1; a < k; ++a) {
@@ -124,14 +130,14 @@ private:
     template <int known, int most>
     inline HOL_FORCED V up_decomposed(int32_t slot, int k, V y) const {
         const KeptBond<V> *const bond = kept.bond + s.child_start[slot];
-        for_children<known, most>(slot, k, [&](int a, V of_child) HOL_FORCED { y = mul_add(bond[a].l, of_child, y); });
+        for_children<known, most>(slot, s.child_start[slot], k,
+                                  [&](int a, V of_child) HOL_FORCED { y = mul_add(bond[a].l, of_child, y); });
         return y;
     }
     // Calls body(a, y of child a), and then solves for u of the children.
     template <int known, int most, class Body>
-    inline HOL_FORCED void for_children(int32_t slot, int count, const Body &body) const {
+    inline HOL_FORCED void for_children(int32_t slot, int32_t first, int count, const Body &body) const {
         const int k = known > 0 ? known : count;
-        const int32_t first = s.child_start[slot];
         const KeptBond<V> *const bond = kept.bond + first;
         KeptValue<V> *const of = value + first;
         V y[most], z_of[most], u[most], r[most];
@@ -183,7 +189,7 @@ private:
             choose_number<0, bare ? 0 : most_on_ring>(bare ? 0 : children(slot), [&](auto known) HOL_FORCED {
                 if constexpr (known > 0) {
                     V y_to = value[place].t, y_from = value[slot].t;
-                    for_children<known, known>(slot, known, [&](int a, V y) HOL_FORCED {
+                    for_children<known, known>(slot, s.child[s.child_start[slot]], known, [&](int a, V y) HOL_FORCED {
                         y_to = mul_add(reach[a], y, y_to);
                         y_from = mul_add(reach[known + a], y, y_from);
                     });
@@ -258,7 +264,7 @@ private:
             const int32_t to = before(slot);
             T2 = mul_add(kept.bond[to].q, own2(value[to]), kept.bond[slot].q * own2(value[slot]));
         }
-        for (int32_t c = s.child_start[slot]; c < s.child_start[slot + 1]; ++c)
+        for (int32_t a = 0, c = k > 0 ? first_child(slot) : 0; a < k; ++a, ++c)
             T2 = mul_add(kept.bond[c].q, value[c].t * value[c].t, T2);
         return shared_error(slot, k, T2);
     }
@@ -290,7 +296,7 @@ private:
     template <int k, bool pulled>
     inline HOL_FORCED void down_ring_joint(int32_t slot, const V *reach, V t, V t2, V behind, V behind2,
                                            Vector3<V> *pull, KeptWay<V> &way) const {
-        const int32_t first = s.child_start[slot];
+        const int32_t first = k > 0 ? s.child[s.child_start[slot]] : 0;
         const KeptBond<V> &to = kept.bond[before(slot)], &from = kept.bond[slot], *const bond = kept.bond + first;
         KeptValue<V> *const of = value + first;
         V T2 = mul_add(to.q, t2, from.q * behind2);

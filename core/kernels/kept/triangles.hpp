@@ -1,4 +1,5 @@
-// Kept factors of triangles, in registers: triangle/linear.hpp has the equations.
+// Kept factors of rigid water and other triangles, in registers: bonds and the inverse of theory (56) are kept.
+// triangle/linear.hpp has the equations and the test that plain products will do.
 #pragma once
 
 #include "core/kernels/kept/flagged.hpp"

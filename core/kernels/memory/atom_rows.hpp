@@ -32,6 +32,10 @@ HOL_INLINE void write_rows(double *const *p, quad x, quad y, quad z) {
 HOL_INLINE void read_rows(const double *const *p, vec3 &a) {
 #if HOL_LANES == 4 && defined(__AVX2__)
     read_rows(p, a.x, a.y, a.z);
+#elif HOL_NEON
+    vec pair[2] = {load(p[0]), load(p[1])};
+    transpose(pair);
+    a = {pair[0], pair[1], vec{p[0][2], p[1][2]}};
 #elif HOL_LANES == 2
     a = {vec{p[0][0], p[1][0]}, vec{p[0][1], p[1][1]}, vec{p[0][2], p[1][2]}};
 #else
@@ -46,6 +50,14 @@ HOL_INLINE void read_rows(const double *const *p, vec3 &a) {
 HOL_INLINE void write_rows(double *const *p, const vec3 &a) {
 #if HOL_LANES == 4 && defined(__AVX2__)
     write_rows(p, a.x, a.y, a.z);
+#elif HOL_NEON
+    vec pair[2] = {a.x, a.y};
+    transpose(pair);
+    HOL_UNROLL
+    for (int i = 0; i < 2; ++i) {
+        store(p[i], pair[i]);
+        p[i][2] = a.z[i];
+    }
 #else
     for (int i = 0; i < W; ++i) {
         p[i][0] = a.x[i];

@@ -44,8 +44,8 @@ HOL_INLINE void read_columns(const Columns &from, int64_t first, vec3 *atoms) {
     for (int c = 0; c < 3; ++c) {
         double *p[W];
         rows_of_column<n>(from.component[c], first, p);
-#if HOL_LANES == 4 && defined(__AVX2__)
-        quad e[n];
+#if HOL_ELEMENTS
+        vec e[n];
         read_elements<n>(p, e);
         HOL_UNROLL
         for (int k = 0; k < n; ++k) (&atoms[k].x)[c] = e[k];
@@ -65,8 +65,8 @@ HOL_INLINE void write_columns(const Columns &to, int64_t first, const vec3 *atom
     for (int c = 0; c < 3; ++c) {
         double *p[W];
         rows_of_column<n>(to.component[c], first, p);
-#if HOL_LANES == 4 && defined(__AVX2__)
-        quad e[n];
+#if HOL_ELEMENTS
+        vec e[n];
         HOL_UNROLL
         for (int k = 0; k < n; ++k) e[k] = (&atoms[k].x)[c];
         write_elements<n>(p, e);

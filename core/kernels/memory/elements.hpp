@@ -1,10 +1,17 @@
 // Elements that stand one behind the other in each of four lanes: four at a time where they can be, then two by two,
-// then alone.
+// then alone. In two lanes: two by two, then alone.
 #pragma once
 
 #include "core/kernels/isa/lanes.hpp"
 
 namespace holonomic::HOL_ISA {
+
+// Whether there are functions for all lanes at once.
+#if HOL_NEON || (HOL_LANES == 4 && defined(__AVX2__))
+#define HOL_ELEMENTS 1
+#else
+#define HOL_ELEMENTS 0
+#endif
 
 #if HOL_LANES >= 4 && defined(__AVX2__)
 // Two elements of four lanes, from element k of their rows.
@@ -56,6 +63,39 @@ HOL_INLINE void write_elements(double *const *p, quad *e) {
     }
     for_each_left<n>(
         e, [&](int i, int c, double2 x) HOL_FORCED { _mm_storeu_pd(p[i] + c, x); },
+        [&](int i, int c, double x) HOL_FORCED { p[i][c] = x; });
+}
+#elif HOL_NEON
+template <int n>
+HOL_INLINE void read_elements(const double *const *p, vec *e) {
+    constexpr int twos = n / 2 * 2;
+    HOL_UNROLL
+    for (int j = 0; j < twos; j += 2) {
+        e[j] = load(p[0] + j);
+        e[j + 1] = load(p[1] + j);
+        transpose(e + j);
+    }
+    if (twos < n) e[n - 1] = vec{p[0][n - 1], p[1][n - 1]};
+}
+
+// The elements are used up. pair(lane, element, numbers) gets two, one(lane, element, number) what is left.
+template <int n, class Two, class One>
+HOL_INLINE void for_each_pair(vec *e, const Two &pair, const One &one) {
+    constexpr int twos = n / 2 * 2;
+    HOL_UNROLL
+    for (int j = 0; j < twos; j += 2) {
+        transpose(e + j);
+        pair(0, j, e[j]);
+        pair(1, j, e[j + 1]);
+    }
+    if (twos == n) return;
+    one(0, n - 1, e[n - 1][0]);
+    one(1, n - 1, e[n - 1][1]);
+}
+template <int n>
+HOL_INLINE void write_elements(double *const *p, vec *e) {
+    for_each_pair<n>(
+        e, [&](int i, int c, vec x) HOL_FORCED { store(p[i] + c, x); },
         [&](int i, int c, double x) HOL_FORCED { p[i][c] = x; });
 }
 #endif

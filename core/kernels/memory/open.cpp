@@ -1,3 +1,5 @@
+// Opens a block of W chains (open.hpp): their inverse masses, relative to a unit of each chain's own, where their
+// atoms stand, and which are bad or staged. Compiled once, for all levels.
 #include "core/kernels/memory/open.hpp"
 
 namespace holonomic::HOL_ISA {

@@ -1,3 +1,5 @@
+// What is written of a block of W chains (outputs.hpp), compiled once: multipliers, W bonds of W chains turned at a
+// time; the constraint forces t_k d_k - t_{k-1} d_{k-1} on the atoms; the virial.
 #include "core/kernels/memory/outputs.hpp"
 
 namespace holonomic::HOL_ISA {

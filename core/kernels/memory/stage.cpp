@@ -1,3 +1,5 @@
+// Copies a chain's atoms between the caller's layout and packed scratch (stage.hpp): floats, two dimensions,
+// separate arrays and lists. The kernels then see one layout, and the arithmetic is the same.
 #include "core/kernels/memory/stage.hpp"
 
 namespace holonomic::HOL_ISA {
@@ -40,8 +42,8 @@ struct Apart {
     }
 };
 
-// Copies the atoms 0 .. n between x, y, z and packed[n+1][3], four at a time. Returns the first atom that is left. A
-// plain loop takes twice as many instructions.
+// Copies the atoms 0 .. n between x, y, z and packed[n+1][3], four (on Arm two) at a time. Returns the first atom that
+// is left. A plain loop takes twice as many instructions.
 #if defined(__AVX2__)
 HOL_INLINE long pack(const Apart &from, long n, double *packed) {
     long k = 0;
@@ -68,6 +70,28 @@ HOL_INLINE long unpack(const double *packed, long n, const Apart &to) {
         put(to.x + k, _mm256_blend_pd(xy, zx, 10));
         put(to.y + k, _mm256_shuffle_pd(xy, yz, 5));
         put(to.z + k, _mm256_blend_pd(zx, yz, 10));
+    }
+    return k;
+}
+#elif defined(__aarch64__)
+HOL_INLINE long pack(const Apart &from, long n, double *packed) {
+    long k = 0;
+    for (; k + 1 <= n; k += 2) {
+        const float64x2x3_t a = {{vld1q_f64(from.x + k), vld1q_f64(from.y + k), vld1q_f64(from.z + k)}};
+        vst3q_f64(packed + 3 * k, a);
+    }
+    return k;
+}
+
+template <bool add>
+HOL_INLINE long unpack(const double *packed, long n, const Apart &to) {
+    const auto put = [](double *p, float64x2_t a) HOL_FORCED { vst1q_f64(p, add ? vld1q_f64(p) + a : a); };
+    long k = 0;
+    for (; k + 1 <= n; k += 2) {
+        const float64x2x3_t a = vld3q_f64(packed + 3 * k);
+        put(to.x + k, a.val[0]);
+        put(to.y + k, a.val[1]);
+        put(to.z + k, a.val[2]);
     }
     return k;
 }

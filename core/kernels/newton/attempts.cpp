@@ -1,3 +1,5 @@
+// Position level of a block of chains once it has been read: a guess, Newton's method (theory (15)-(17)), what is
+// done with lanes whose moves are coarse, and what is written. attempts.hpp says what each is for.
 #include "core/kernels/newton/attempts.hpp"
 
 #include "core/kernels/arithmetic/image.hpp"

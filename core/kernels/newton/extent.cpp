@@ -1,3 +1,5 @@
+// The largest coordinate of each chain of a block: its rounding is what a length may be off by (criterion.hpp).
+// Packed rows are read W numbers at a time, atoms of lists one by one.
 #include "core/kernels/newton/criterion.hpp"
 
 namespace holonomic::HOL_ISA {

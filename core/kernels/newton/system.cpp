@@ -1,3 +1,5 @@
+// The lengths of a block of chains in lanes, their squares and inverses, as Newton's method takes them. If each
+// chain has one length, no table is made.
 #include "core/kernels/newton/system.hpp"
 
 namespace holonomic::HOL_ISA {

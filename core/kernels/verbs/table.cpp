@@ -26,6 +26,7 @@ extern const Kernels kernels;
 const Kernels kernels = {
     HOL_STRING(HOL_ISA),
     W,
+    HOL_HAS_FMA != 0,
     scratch_bytes,
     scratch_doubles(longest_piece) * static_cast<int64_t>(sizeof(double)),
     forces,

@@ -44,19 +44,19 @@ Molecule Chains::molecule(std::int64_t molecule) const {
     return molecule_of(group, molecule - group.first_molecule);
 }
 
-int Chains::form_of(std::int64_t number) const {
-    return number < n_chains() ? static_cast<int>(molecule(number).form()) : form_with_bodies;
+int Chains::topology_of(std::int64_t number) const {
+    return number < n_chains() ? static_cast<int>(molecule(number).topology()) : topology_with_bodies;
 }
 
 std::int64_t Chains::n_kinds() const { return kinds_.size() + (bodies_ ? bodies_->n_shapes() : 0); }
 
-std::int64_t Chains::n_of_form(int form) const {
-    if (form == form_with_bodies) return bodies_ ? bodies_->n_molecules() : 0;
+std::int64_t Chains::n_of_topology(int topology) const {
+    if (topology == topology_with_bodies) return bodies_ ? bodies_->n_molecules() : 0;
     std::int64_t n = 0;
     for (const Group &group : groups_.all()) {
         const std::int32_t shape = kind_of(group).shape;
-        const Form its = shape == linear ? Form::chain : shapes_[shape].form;
-        if (static_cast<int>(its) == form) n += group.count;
+        const Topology its = shape == linear ? Topology::chain : shapes_[shape].topology;
+        if (static_cast<int>(its) == topology) n += group.count;
     }
     return n;
 }

@@ -1,4 +1,4 @@
-// The lanes of a piece of work, as the kernels see them.
+// The lanes of a chunk of work, as the kernels see them.
 #include "core/molecules/chains.hpp"
 
 namespace holonomic {
@@ -12,8 +12,8 @@ std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 
-std::int64_t Chains::piece_bonds(const Plan::Piece &piece) const {
-    return piece.group < 0 ? 0 : kind_of(groups_.all()[at(piece.group)]).n_bonds;
+std::int64_t Chains::chunk_bonds(const Plan::Chunk &chunk) const {
+    return chunk.group < 0 ? 0 : kind_of(groups_.all()[at(chunk.group)]).n_bonds;
 }
 
 Lane Chains::lane_of(const Group &group, std::int64_t index, std::int64_t stage) const {
@@ -64,7 +64,7 @@ Lane Chains::lane(std::int64_t molecule) const {
     return lane_of(group, molecule - group.first_molecule, -1);
 }
 
-Unit Chains::unit(const Plan &plan, const Plan::Piece &p, Lane *lane) const {
+Unit Chains::unit(const Plan &plan, const Plan::Chunk &p, Lane *lane) const {
     const bool large = plan.n_bonds > bonds_in_cache;
     if (p.group >= 0) {
         *lane = lane_of(groups_.all()[at(p.group)], p.first, p.stage);
@@ -75,7 +75,7 @@ Unit Chains::unit(const Plan &plan, const Plan::Piece &p, Lane *lane) const {
 
 namespace {
 
-inline MoleculeUnit unit_of(const Plan &plan, const Plan::Piece &p, const MoleculeLane *lanes, bool regular) {
+inline MoleculeUnit unit_of(const Plan &plan, const Plan::Chunk &p, const MoleculeLane *lanes, bool regular) {
     return {plan.elimination_plans[at(p.shape)],
             lanes,
             p.count,
@@ -88,13 +88,13 @@ inline MoleculeUnit unit_of(const Plan &plan, const Plan::Piece &p, const Molecu
 
 }  // namespace
 
-MoleculeUnit Chains::unit(const Plan &plan, const Plan::Piece &p, MoleculeLane *lane) const {
+MoleculeUnit Chains::unit(const Plan &plan, const Plan::Chunk &p, MoleculeLane *lane) const {
     if (p.group >= 0) return unit_of_group(plan, p, lane);
     return unit_of(plan, p, &plan.loose_molecules[at(p.first)], false);
 }
 
 // Not inlined: what comes as a list needs none of it.
-[[gnu::noinline]] MoleculeUnit Chains::unit_of_group(const Plan &plan, const Plan::Piece &p, MoleculeLane *lane) const {
+[[gnu::noinline]] MoleculeUnit Chains::unit_of_group(const Plan &plan, const Plan::Chunk &p, MoleculeLane *lane) const {
     *lane = molecule_lane_of(plan, groups_.all()[at(p.group)], p.first, p.stage, p.part);
     return unit_of(plan, p, lane, true);
 }

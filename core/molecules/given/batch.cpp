@@ -175,7 +175,7 @@ std::int32_t Batch::shape_of(const FoundMolecules &found, std::size_t m, std::in
     if (room_ < 0) room_ = memory_left(chains_);
     try {
         const std::int32_t shape = chains_.shapes_.find(
-            molecule.form, molecule.n_atoms, molecule.n_bonds, &found.pairs[2 * at(molecule.first_bond)],
+            molecule.topology, molecule.n_atoms, molecule.n_bonds, &found.pairs[2 * at(molecule.first_bond)],
             &found.fixed[at(molecule.first_atom)], likely, room_, work_.get());
         if (shape == before)
             room_ = std::max<std::int64_t>(
@@ -210,7 +210,7 @@ void Batch::append_found(const FoundMolecules &found, const BondList &list, cons
         w_.resize(n_atoms);
         for (std::size_t i = 0; i < n_atoms; ++i) w_[i] = chains_.masses_.w(found.atoms[first + i]);
         std::int32_t shape = linear;
-        if (molecule.form != Form::chain) shape = last_shape = shape_of(found, m, last_shape);
+        if (molecule.topology != Topology::chain) shape = last_shape = shape_of(found, m, last_shape);
         note_direction(found, molecule, list);
         append_one(found, m, shape, &in_order[at(molecule.first_bond)]);
         if (molecule.n_fixed == 0) continue;

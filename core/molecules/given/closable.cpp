@@ -28,8 +28,8 @@ bool find_in_ring(const Shape &shape, const double *length, Unclosable *found) {
 }  // namespace
 
 bool find_unclosable(const Shape &shape, const double *length, Unclosable *found) {
-    if (shape.form == Form::chain || shape.form == Form::tree) return false;
-    if (shape.form == Form::ring) return find_in_ring(shape, length, found);
+    if (shape.topology == Topology::chain || shape.topology == Topology::tree) return false;
+    if (shape.topology == Topology::ring) return find_in_ring(shape, length, found);
     // Bonds of each atom to higher ones. The pairs ascend, so that these follow each other.
     std::vector<std::int32_t> start(at(shape.n_atoms) + 1, 0), marked(at(shape.n_atoms), -1);
     for (std::int32_t k = 0; k < shape.n_bonds; ++k) ++start[at(shape.i(k)) + 1];

@@ -23,7 +23,7 @@ struct BondList {
 // Atoms of a molecule are ordered along a linear chain, its lower end first, else they ascend; a fixed atom stands once
 // for each of its bonds. Bonds are ordered along a linear chain, else by their lower and then their higher atom.
 struct FoundMolecule {
-    Form form;
+    Topology topology;
     std::int32_t n_atoms, n_bonds, n_fixed;
     std::int64_t first_atom, first_bond;  // where its atoms and bonds begin in the lists
 };

@@ -20,7 +20,7 @@ struct Molecule {
     std::int64_t first_bond;
     const std::int64_t *bond_list;  // or null: from first_bond on
 
-    Form form() const { return shape ? shape->form : Form::chain; }
+    Topology topology() const { return shape ? shape->topology : Topology::chain; }
     std::int64_t atom(std::int64_t i) const { return atom_list ? atom_list[i] : first_atom + i; }
     double w(std::int64_t i) const { return w_table ? w_table[i] : w_uniform; }
     // The two atoms of bond k, d = r_j - r_i.

@@ -104,22 +104,22 @@ bool Recogniser::walk_along_chain() {
     return true;
 }
 
-Form Recogniser::form_of_cyclic() const {
+Topology Recogniser::topology_of_cyclic() const {
     const std::size_t n_atoms = draft_.atoms.size();
-    if (draft_.bonds.size() != n_atoms) return Form::other;
+    if (draft_.bonds.size() != n_atoms) return Topology::other;
     std::vector<unsigned char> degree(n_atoms, 0);
     for (const std::int32_t i : draft_.pairs)
-        if (++degree[at(i)] > 2) return Form::other;
-    return n_atoms == 3 ? Form::triangle : Form::ring;
+        if (++degree[at(i)] > 2) return Topology::other;
+    return n_atoms == 3 ? Topology::triangle : Topology::ring;
 }
 
 void Recogniser::add_to(FoundMolecules &found) {
     sort_bonds();
     const std::size_t n_bonds = draft_.bonds.size(), n_atoms = draft_.atoms.size();
     const bool acyclic = n_bonds + 1 == n_atoms;
-    const Form form = !acyclic ? form_of_cyclic() : walk_along_chain() ? Form::chain : Form::tree;
-    if (form == Form::tree || form == Form::other) check_count(list_, draft_);
-    found.molecules.push_back({form, static_cast<std::int32_t>(n_atoms), static_cast<std::int32_t>(n_bonds),
+    const Topology topology = !acyclic ? topology_of_cyclic() : walk_along_chain() ? Topology::chain : Topology::tree;
+    if (topology == Topology::tree || topology == Topology::other) check_count(list_, draft_);
+    found.molecules.push_back({topology, static_cast<std::int32_t>(n_atoms), static_cast<std::int32_t>(n_bonds),
                                static_cast<std::int32_t>(std::count(draft_.fixed.begin(), draft_.fixed.end(), 1)),
                                static_cast<std::int64_t>(found.atoms.size()),
                                static_cast<std::int64_t>(found.bonds.size())});

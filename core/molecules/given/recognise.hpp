@@ -29,7 +29,7 @@ private:
     void sort_few();
     void sort_many();
     bool walk_along_chain();
-    Form form_of_cyclic() const;
+    Topology topology_of_cyclic() const;
 
     const BondList &list_;
     Draft draft_;

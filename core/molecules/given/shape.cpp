@@ -49,7 +49,7 @@ std::vector<std::int32_t> spanning_walk(std::int32_t n_atoms, std::int32_t n_bon
 
 }  // namespace
 
-std::int32_t Shapes::find(Form form, std::int32_t n_atoms, std::int32_t n_bonds, const std::int32_t *pairs,
+std::int32_t Shapes::find(Topology topology, std::int32_t n_atoms, std::int32_t n_bonds, const std::int32_t *pairs,
                           const unsigned char *fixed, std::int32_t likely, std::int64_t most_bytes,
                           EliminationWork *work) {
     if (likely >= 0 && is((*this)[likely], n_atoms, n_bonds, pairs, fixed)) return likely;
@@ -61,7 +61,7 @@ std::int32_t Shapes::find(Form form, std::int32_t n_atoms, std::int32_t n_bonds,
         if (is((*this)[it->second], n_atoms, n_bonds, pairs, fixed)) return it->second;
 
     if (n_bonds > most_bytes / bytes_of_shape_bond) throw TooMuchMemory(n_bonds * bytes_of_shape_bond);
-    Shape shape{form, n_atoms, n_bonds, {}, {}};
+    Shape shape{topology, n_atoms, n_bonds, {}, {}};
     if (n_bonds >= n_atoms) shape.round_cycles = spanning_walk(n_atoms, n_bonds, pairs);
     shape.elimination = make_elimination_plan(n_atoms, n_bonds, pairs, fixed, most_bytes, work);
     shapes_.push_back(std::move(shape));

@@ -11,10 +11,10 @@
 namespace holonomic {
 
 // The values are those of hol_shape, which capi/molecules.cpp asserts.
-enum class Form { chain = 0, tree = 1, ring = 2, triangle = 3, other = 4 };
+enum class Topology { chain = 0, tree = 1, ring = 2, triangle = 3, other = 4 };
 
 struct Shape {
-    Form form;
+    Topology topology;
     std::int32_t n_atoms, n_bonds;
     std::vector<std::int32_t> round_cycles;              // with cycles, the steps of walk(): k, or ~k if it goes back
     std::shared_ptr<const EliminationPlan> elimination;  // copies of the set share it
@@ -36,7 +36,7 @@ class Shapes {
 public:
     // The shape with these bonds and fixed atoms; a new one if there is none yet. Looks at `likely` first. Throws
     // std::bad_alloc, or TooMuchMemory where a new one would take more than most_bytes; then nothing is changed.
-    std::int32_t find(Form form, std::int32_t n_atoms, std::int32_t n_bonds, const std::int32_t *pairs,
+    std::int32_t find(Topology topology, std::int32_t n_atoms, std::int32_t n_bonds, const std::int32_t *pairs,
                       const unsigned char *fixed, std::int32_t likely, std::int64_t most_bytes = no_limit,
                       EliminationWork *work = nullptr);
 

@@ -253,7 +253,10 @@ private:
     // ns, measured on Zen 4; and numbers, in vectors of four.
     static double time_of(const FrontPlan::Front &f) {
         double operations = 0;
-        for (double k = 0; k < f.n_own; ++k) operations += 0.5 * (f.n_rows - k) * (f.n_rows - k);
+        for (std::int32_t k = 0; k < f.n_own; ++k) {
+            const double rows = f.n_rows - k;
+            operations += 0.5 * rows * rows;
+        }
         return 0.05 * operations + 1.5 * entries_of(f) + 30 * f.n_rows;
     }
     static double entries_of(const FrontPlan::Front &f) { return (f.n_own + 4.0) * (f.n_rows + 8.0); }

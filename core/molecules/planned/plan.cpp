@@ -14,8 +14,8 @@ namespace holonomic {
 
 namespace {
 
-constexpr std::int64_t bonds_per_piece = 4096;  // enough to hide the cost of a piece, few enough to share out evenly
-// Pieces are cut at multiples of this, the lanes of the widest set that is installed. It is a matter of speed: kernels
+constexpr std::int64_t bonds_per_chunk = 4096;  // enough to hide the cost of a chunk, few enough to share out evenly
+// Chunks are cut at multiples of this, the lanes of the widest set that is installed. It is a matter of speed: kernels
 // of any number of lanes take any number of chains.
 constexpr std::int64_t widest = 8;
 static_assert(widest <= most_lanes, "");
@@ -53,17 +53,17 @@ public:
         for (std::int64_t i = 0; i < plan_->tree_batches.size(); ++i)
             need(kernels().molecules.batch_bytes(*plan_->tree_batches[i]));
         need(scratch_bytes(plan_->longest));
-        const std::vector<Plan::Piece> &pieces = plan_->pieces;
-        if (pieces.size() == 1 && pieces[0].shape == linear && plan_->longest <= longest_lane &&
-            !(pieces[0].where & far_units))
-            plan_->only = chains_.unit(*plan_, pieces[0], &plan_->first_of_only);
+        const std::vector<Plan::Chunk> &chunks = plan_->chunks;
+        if (chunks.size() == 1 && chunks[0].shape == linear && plan_->longest <= longest_lane &&
+            !(chunks[0].where & far_units))
+            plan_->only = chains_.unit(*plan_, chunks[0], &plan_->first_of_only);
         return std::move(plan_);
     }
 
 private:
     const Kind &kind(std::int64_t group) const { return chains_.kind_of(groups_[at(group)]); }
 
-    // Not in lanes beside others of its kind (core/kernels/molecules/blocks.hpp): a piece of its own, so that threads
+    // Not in lanes beside others of its kind (core/kernels/molecules/blocks.hpp): a chunk of its own, so that threads
     // share what is large.
     bool works_alone(std::int32_t shape, std::int64_t n_bonds) const {
         if (shape == linear) return n_bonds > longest_lane;
@@ -133,7 +133,7 @@ private:
         for (std::size_t e = 0; e < pairs.size(); ++e) pairs[e] = static_cast<std::int32_t>((e + 1) / 2);
         for (std::size_t i = 0; i < fixed.size(); ++i) fixed[i] = w[at(first) + i] == 0;
         const std::int32_t shape =
-            plan_->part_shapes.find(Form::chain, static_cast<std::int32_t>(n_bonds + 1),
+            plan_->part_shapes.find(Topology::chain, static_cast<std::int32_t>(n_bonds + 1),
                                     static_cast<std::int32_t>(n_bonds), pairs.data(), fixed.data(), -1);
         plan_->parts.push_back({first, n_bonds, n_shapes_ + shape});
     }
@@ -148,11 +148,11 @@ private:
         plan_->reordered = plan_->reordered || (where & reordered) != 0;
         plan_->copied = plan_->copied || ((where & reordered) && !lists_bonds(k.shape));
         Run run{g, begin, end, stage, -1, k.n_bonds, k.shape, where};
-        if (k.shape != linear || plan_->part_start.empty()) return add_pieces(run);
+        if (k.shape != linear || plan_->part_start.empty()) return add_chunks(run);
         for (run.part = plan_->part_start[at(groups_[at(g)].kind)];
              run.part < plan_->part_start[at(groups_[at(g)].kind + 1)]; ++run.part) {
             run.shape = plan_->parts[at(run.part)].shape;
-            add_pieces(run);
+            add_chunks(run);
         }
     }
 
@@ -163,7 +163,7 @@ private:
         int where;
     };
 
-    void add_pieces(const Run &run) {
+    void add_chunks(const Run &run) {
         if (run.shape == linear) {
             plan_->longest = std::max(plan_->longest, run.n_bonds);
         } else {
@@ -173,13 +173,13 @@ private:
         const bool alone = works_alone(run.shape, run.n_bonds);
         const bool whole = run.part < 0 || plan_->parts[at(run.part)].n_bonds == run.n_bonds;
         const std::int64_t block = alone ? 1 : widest, size = kind(run.group).n_atoms();
-        const std::int64_t per_piece = alone ? 1 : std::max(widest, bonds_per_piece / run.n_bonds / widest * widest);
+        const std::int64_t per_piece = alone ? 1 : std::max(widest, bonds_per_chunk / run.n_bonds / widest * widest);
         const auto stage = [&](std::int64_t i) { return run.stage < 0 ? -1 : run.stage + (i - run.begin) * size; };
         std::int64_t begin = run.begin;
         while (whole && run.end - begin >= block) {
             const std::int64_t count = std::min(per_piece, (run.end - begin) / block * block);
-            plan_->pieces.push_back({run.group, begin, count, stage(begin), run.part, run.shape, run.where});
-            if (alone && run.shape != linear) plant_alone(plan_->pieces.back());
+            plan_->chunks.push_back({run.group, begin, count, stage(begin), run.part, run.shape, run.where});
+            if (alone && run.shape != linear) plant_alone(plan_->chunks.back());
             begin += count;
         }
         for (; begin < run.end; ++begin)
@@ -235,9 +235,9 @@ private:
                     plan_->loose_molecules.push_back(
                         chains_.molecule_lane_of(*plan_, group, one.index, one.stage, one.part));
             }
-            plan_->pieces.push_back({-1, static_cast<std::int64_t>(place), static_cast<std::int64_t>(end - first), -1,
+            plan_->chunks.push_back({-1, static_cast<std::int64_t>(place), static_cast<std::int64_t>(end - first), -1,
                                      -1, head.shape, head.where});
-            if (head.shape != loose_[end - 1].shape) plant(first, end, plan_->pieces.back());
+            if (head.shape != loose_[end - 1].shape) plant(first, end, plan_->chunks.back());
         }
     }
 
@@ -260,27 +260,27 @@ private:
         }
     }
 
-    // Puts the trees of a piece into batches of trees.
-    void plant(std::size_t first, std::size_t end, Plan::Piece &piece) {
+    // Puts the trees of a chunk into batches of trees.
+    void plant(std::size_t first, std::size_t end, Plan::Chunk &chunk) {
         const std::size_t lanes = static_cast<std::size_t>(kernels().lanes);
         const EliminationPlan *tree[most_lanes];
-        piece.first_batch = plan_->tree_batches.size();
+        chunk.first_batch = plan_->tree_batches.size();
         for (std::size_t i = first; i < end; i += lanes) {
             const std::size_t n = std::min(lanes, end - i);
             for (std::size_t l = 0; l < n; ++l) tree[l] = plan_->elimination_plans[at(loose_[i + l].shape)];
             plan_->tree_batches.add(static_cast<int>(lanes), tree, static_cast<int>(n));
         }
-        piece.n_batches = plan_->tree_batches.size() - piece.first_batch;
+        chunk.n_batches = plan_->tree_batches.size() - chunk.first_batch;
     }
 
     // A large tree whose atoms fill the lanes is a batch of trees by itself, the same for all molecules of a shape.
-    void plant_alone(Plan::Piece &piece) {
-        const EliminationPlan &s = *plan_->elimination_plans[at(piece.shape)];
+    void plant_alone(Plan::Chunk &chunk) {
+        const EliminationPlan &s = *plan_->elimination_plans[at(chunk.shape)];
         if (s.way.forces != Way::large_tree) return;
-        const auto found = alone_.emplace(piece.shape, plan_->tree_batches.size());
+        const auto found = alone_.emplace(chunk.shape, plan_->tree_batches.size());
         if (found.second) plan_->tree_batches.add_large(kernels().lanes, &s);
-        piece.first_batch = found.first->second;
-        piece.n_batches = 1;
+        chunk.first_batch = found.first->second;
+        chunk.n_batches = 1;
     }
 
     const Chains &chains_;
@@ -292,12 +292,12 @@ private:
 };
 
 std::int64_t Plan::bytes() const {
-    std::size_t bytes =
-        sizeof *this + pieces.capacity() * sizeof(Piece) + loose_chains.capacity() * sizeof(Lane) +
-        loose_molecules.capacity() * sizeof(MoleculeLane) +
-        elimination_plans.capacity() * sizeof(elimination_plans[0]) + shapes.capacity() * sizeof(shapes[0]) +
-        (stage.capacity() + part_start.capacity()) * sizeof(std::int64_t) + is_copy.capacity() +
-        copies.capacity() * sizeof(Copy) + parts.capacity() * sizeof(Part) + part_shapes.bytes() + tree_batches.bytes();
+    std::size_t bytes = sizeof *this + chunks.capacity() * sizeof(Chunk) + loose_chains.capacity() * sizeof(Lane) +
+                        loose_molecules.capacity() * sizeof(MoleculeLane) +
+                        elimination_plans.capacity() * sizeof(void *) + shapes.capacity() * sizeof(shapes[0]) +
+                        (stage.capacity() + part_start.capacity()) * sizeof(std::int64_t) + is_copy.capacity() +
+                        copies.capacity() * sizeof(Copy) + parts.capacity() * sizeof(Part) + part_shapes.bytes() +
+                        tree_batches.bytes();
     for (const std::vector<double> &table : w) bytes += table.capacity() * sizeof(double);
     return static_cast<std::int64_t>(bytes);
 }

@@ -1,4 +1,4 @@
-// How a call goes through the molecules: pieces of work of a few thousand bonds, the same for any number of threads.
+// How a call goes through the molecules: chunks of work of a few thousand bonds, the same for any number of threads.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ constexpr int far_units = 4;
 
 // Made at the first use after a change. Which molecules share a unit, or a block of lanes in it, changes no result.
 struct Plan {
-    struct Piece {
+    struct Chunk {
         std::int64_t group;         // `count` molecules of this group from `first` on, or
         std::int64_t first, count;  // if group == -1: these of the loose chains, or of the loose molecules
         std::int64_t stage;         // of the first, or -1
@@ -31,8 +31,8 @@ struct Plan {
     struct Copy {
         std::int64_t atom, place;
     };
-    std::vector<Piece> pieces;
-    // The only piece, if these are chains that fit into lanes: a call on one short chain makes nothing else of its
+    std::vector<Chunk> chunks;
+    // The only chunk, if these are chains that fit into lanes: a call on one short chain makes nothing else of its
     // plan.
     Unit only{};
     Lane first_of_only;
@@ -64,8 +64,8 @@ struct Plan {
     std::int64_t bytes() const;
 };
 
-// Loose molecules are worked on in pieces of so many, or of a multiple that has at least so many bonds: what is done
-// once a piece took a tenth of the time of single bonds in pieces of 64.
+// Loose molecules are worked on in chunks of so many, or of a multiple that has at least so many bonds: what is done
+// once a chunk took a tenth of the time of single bonds in chunks of 64.
 constexpr std::int64_t loose_piece = 64, loose_piece_bonds = 512;
 
 }  // namespace holonomic

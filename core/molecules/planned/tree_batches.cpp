@@ -307,8 +307,7 @@ void TreeBatches::finish() {
 std::size_t TreeBatches::bytes() const {
     return batch_.capacity() * sizeof(TreeBatch) +
            (numbers_.capacity() + piece_start_.capacity()) * sizeof(std::int32_t) +
-           (stored_.capacity() + held_.capacity()) * sizeof(std::uint16_t) +
-           elimination_.capacity() * sizeof(EliminationPlan *);
+           (stored_.capacity() + held_.capacity()) * sizeof(std::uint16_t) + elimination_.capacity() * sizeof(void *);
 }
 
 }  // namespace holonomic

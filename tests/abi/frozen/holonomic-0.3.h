@@ -138,8 +138,8 @@ HOL_API int hol_error_remember(int status, const char *message);
 
 /**
  * The instruction set that the calculations use on this machine: "baseline", "avx2" or "avx512vl" (four lanes with the
- * registers of AVX-512). Never NULL. A chain of up to 256 bonds that comes alone runs with "scalar" (one lane, with
- * AVX2's instructions) where one of the last two runs: the same bits, in less time. The environment variable
+ * registers of AVX-512); on 64-bit Arm "neon". Never NULL. A chain of up to 256 bonds that comes alone runs with
+ * "scalar" (one lane) where one of the last three runs: the same bits, in less time. The environment variable
  * HOLONOMIC_ISA, read at the first use in a process, forces one of these names if the machine has it. Since 0.1.
  */
 HOL_API const char *hol_instruction_set(void);
@@ -1046,13 +1046,14 @@ HOL_API void hol_factors_destroy(hol_factors *factors);
 /**
  * Makes the factors at these positions, in the box and with the rate of the box that the set has now. They hold for
  * these until the next update. An update costs about as much as hol_forces, allocates the first time and after a change
- * of the set, and keeps 5 to 16 doubles per bond and 4 per atom. So factors pay from about three solves on.
+ * of the set, and keeps 5 to 16 doubles per bond and 4 per atom, more where cycles fill. So factors pay from about
+ * three solves on.
  *
- * Factors are kept for chains, trees and rings of up to 2048 bonds and for triangles; for chains of more than 256 bonds
- * only hol_factors_solve uses them. For all others only the positions are kept, and solves cost as much as hol_forces
- * and hol_solve: larger molecules, other cycles, rigid bodies, molecules that need more than plain products, and all
- * molecules of a set in which molecules share fixed atoms. All results are as accurate as those of hol_forces and
- * hol_solve.
+ * Factors are kept for chains, trees and rings of up to 2048 bonds, for triangles, and for all molecules with cycles
+ * but networks; forces of chains of more than 256 bonds, and of large trees that are mostly chains, do not use them.
+ * For all others only the positions are kept, and solves cost as much as hol_forces and hol_solve: large trees,
+ * networks, rigid bodies, molecules that need more than plain products, and all molecules of a set in which molecules
+ * share fixed atoms. All results are as accurate as those of hol_forces and hol_solve.
  * @param[in,out] factors
  * @param[in]     r        positions [n_atoms][3]. Copied
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_NOT_FINITE; HOL_ERR_DEGENERATE; HOL_ERR_MEMORY. After a bad molecule all others

@@ -1,4 +1,5 @@
-// The sweeps of joint.hpp over one large tree with arms, and what is written of it.
+// The sweeps of tree/joint.hpp (theory (51)-(53)) over one large tree with arms, and what is written of it. Arms
+// come as chains (arms.hpp), between their ends atoms come one by one (atoms.hpp). Compiled once.
 #pragma once
 
 #include "core/kernels/molecules/armed_tree/arms.hpp"

@@ -8,10 +8,12 @@
 
 namespace holonomic::HOL_ISA::graph {
 
-#if HOL_LANES >= 4 && defined(__AVX2__)
+#if HOL_NEON || (HOL_LANES >= 4 && defined(__AVX2__))
 using HOL_ISA::read_elements;
-using HOL_ISA::read_pair;
 using HOL_ISA::write_elements;
+#endif
+#if HOL_LANES >= 4 && defined(__AVX2__)
+using HOL_ISA::read_pair;
 
 // Adds element e, used up, to r, and factor times it to v; either may be nullptr.
 template <int n>
@@ -40,13 +42,27 @@ HOL_INLINE void add_elements(double *const *r, double *const *v, double factor, 
             if (v) v[i][c] = mul_add(factor, x, v[i][c]);
         });
 }
+#elif HOL_NEON
+template <int n>
+HOL_INLINE void add_elements(double *const *r, double *const *v, double factor, vec *e) {
+    for_each_pair<n>(
+        e,
+        [&](int i, int c, vec x) HOL_FORCED {
+            if (r) store(r[i] + c, load(r[i] + c) + x);
+            if (v) store(v[i] + c, mul_add(splat(factor), x, load(v[i] + c)));
+        },
+        [&](int i, int c, double x) HOL_FORCED {
+            if (r) r[i][c] += x;
+            if (v) v[i][c] = mul_add(factor, x, v[i][c]);
+        });
+}
 #endif
 
 template <int n>
 HOL_INLINE void read_elements(const double *const *p, Vector3<vec> *a) {
     vec *const e = &a->x;
-#if HOL_LANES == 4 && defined(__AVX2__)
-    read_elements<n>(p, reinterpret_cast<quad *>(e));
+#if HOL_ELEMENTS
+    read_elements<n>(p, e);
 #else
     for (int c = 0; c < n; ++c)
         for (int i = 0; i < W; ++i) e[c][i] = p[i][c];
@@ -61,8 +77,8 @@ HOL_INLINE void read_elements(const double *const *p, Vector3<double> *a) {
 template <int n>
 HOL_INLINE void write_elements(double *const *p, Vector3<vec> *a) {
     vec *const e = &a->x;
-#if HOL_LANES == 4 && defined(__AVX2__)
-    write_elements<n>(p, reinterpret_cast<quad *>(e));
+#if HOL_ELEMENTS
+    write_elements<n>(p, e);
 #else
     for (int c = 0; c < n; ++c)
         for (int i = 0; i < W; ++i) p[i][c] = e[c][i];
@@ -81,8 +97,8 @@ HOL_INLINE void write_elements(double *const *p, Vector3<double> *a) {
 template <int n>
 HOL_INLINE void add_elements(double *const *r, double *const *v, double factor, Vector3<vec> *a) {
     vec *const e = &a->x;
-#if HOL_LANES == 4 && defined(__AVX2__)
-    add_elements<n>(r, v, factor, reinterpret_cast<quad *>(e));
+#if HOL_ELEMENTS
+    add_elements<n>(r, v, factor, e);
 #else
     for (int c = 0; c < n; ++c)
         for (int i = 0; i < W; ++i) {

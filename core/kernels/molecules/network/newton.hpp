@@ -1,4 +1,6 @@
-// Newton's method for the positions of a network, as sparse_ldl/newton.hpp has it.
+// Newton's method for the positions of a network (theory (15)-(17)), as sparse_ldl/newton.hpp has it; but each
+// step's equations, with the matrix of (58), are solved by factor.hpp, in part by iteration. Such a solve may be
+// incomplete: the next step's errors of lengths are exact whatever it was.
 #pragma once
 
 #include "core/kernels/molecules/iterate.hpp"

@@ -1,4 +1,6 @@
-// Position level of a network.
+// Position level of a network, a gel or a lattice: one molecule of strands that meet at nodes (plan.hpp). Reads
+// bonds strand by strand in lanes, runs iterate() on newton.hpp (theory (15)-(17), (58)), and writes once all
+// lengths are right.
 #pragma once
 
 #include "core/kernels/molecules/network/newton.hpp"

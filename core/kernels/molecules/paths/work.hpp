@@ -1,4 +1,5 @@
-// A large molecule along its paths (path_plan.hpp) at the position level: what its parts share.
+// A large molecule along its paths (plan.hpp) at the position level: what the threads that work on junctions and
+// paths share. Each writes multipliers and moves of its own bonds; nothing reaches the caller before all fit.
 #pragma once
 
 #include "core/kernels/memory/arena.hpp"

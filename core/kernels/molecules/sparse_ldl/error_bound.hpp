@@ -215,13 +215,11 @@ struct LdlErrorBound {
         look_at_missed(tile);
     }
 
-    // Reads the molecules and solves. Returns the lanes in which the proof holds; multipliers are found in all.
-    static unsigned solve(const LdlLinear<V> &all) {
+    // Reads the molecules and eliminates: factors, and right-hand sides on their way up.
+    static void factorize(const LdlLinear<V> &all) {
         clear_sides(all.s, all.t);
         clear_sides(all.s, all.per_pivot);
-        clear_sides(all.s, all.back);
         clear_entries(all.s, all.lower);
-        for (int64_t k = all.s.n_bonds; k < in_fours(all.s.n_bonds); ++k) all.back[k] = V{};  // inert
         all.up([](const LdlLinear<V> &own, const Subtree &subtree) HOL_FORCED {
             unsigned proven = bits(own.in_use()), firm = proven;
             for_tiles_up(own.s, subtree, [&](const Tile &tile) HOL_FORCED {
@@ -235,6 +233,21 @@ struct LdlErrorBound {
             own.left[&subtree - own.s.subtree] = proven;
             own.firm[&subtree - own.s.subtree] = firm;
         });
+    }
+    // Other right-hand sides on their way up, with factors that are there.
+    static void load_sides(const LdlLinear<V> &all) {
+        clear_sides(all.s, all.t);
+        all.up([](const LdlLinear<V> &own, const Subtree &subtree) HOL_FORCED {
+            for_tiles_up(own.s, subtree, [&](const Tile &tile) HOL_FORCED {
+                own.load_sides(tile);
+                solve_up(own.s, tile, own.lower, own.t);
+            });
+        });
+    }
+    // The way down. Returns the lanes in which the proof holds; multipliers are found in all.
+    static unsigned solve(const LdlLinear<V> &all) {
+        clear_sides(all.s, all.back);
+        for (int64_t k = all.s.n_bonds; k < in_fours(all.s.n_bonds); ++k) all.back[k] = V{};  // inert
         // Where it fails in the separator subtrees need not look; what they do is the same in any case.
         unsigned *const separator = all.left + all.s.n_subtrees;
         *separator = all.in_all_subtrees(all.left);

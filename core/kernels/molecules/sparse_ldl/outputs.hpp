@@ -60,10 +60,9 @@ static inline void add_virial(const LdlLinear<V> &x, unsigned which, Tally &tall
     });
 }
 
-// Call: of forces or of given right-hand sides.
+// Call: of forces, of given right-hand sides, or with kept factors. `good`: the lanes that are solved.
 template <class V, class Call>
-static inline unsigned pull_by_ldl(const Call &call, const LdlLinear<V> &x, Tally &tally) {
-    const unsigned good = solve_and_refine(x);
+static inline unsigned write_by_ldl(const Call &call, const LdlLinear<V> &x, unsigned good, Tally &tally) {
     if (good && call.lambda) write_multipliers(x, call.lambda, good);
     if (good && call.tension) write_tensions(x, call.tension, good);
     if (good && call.virial) add_virial(x, good, tally);
@@ -75,13 +74,15 @@ template <class V>
 static inline unsigned solve_by_ldl(const ForcesCall &call, const LdlBlock<V> &block, Tally &tally) {
     const Inputs in = {&call.v, &call.f, nullptr, false};
     const int terms = (call.v.x ? squares : 0) | (call.f.x ? pulls : 0);
-    return pull_by_ldl(call, block.linear(call.box, call.r, in, terms), tally);
+    const LdlLinear<V> x = block.linear(call.box, call.r, in, terms);
+    return write_by_ldl(call, x, solve_and_refine(x), tally);
 }
 
 template <class V>
 static inline unsigned solve_by_ldl(const SolveCall &call, const LdlBlock<V> &block, Tally &tally) {
     const Inputs in = {nullptr, nullptr, call.rhs, false};
-    return pull_by_ldl(call, block.linear(call.box, call.r, in, given), tally);
+    const LdlLinear<V> x = block.linear(call.box, call.r, in, given);
+    return write_by_ldl(call, x, solve_and_refine(x), tally);
 }
 
 template <class V>

@@ -1,4 +1,6 @@
-// Position level of molecules by sparse LDL^T: one (V = double), or W in lanes.
+// Position level of molecules with cycles, and of large ones, by sparse LDL^T: one (V = double), or W in lanes.
+// Reads bonds, runs iterate() on newton.hpp (theory (15)-(17), (58)), and writes once all lengths are right. It
+// relies on ldl_plan.hpp for the order of elimination.
 #pragma once
 
 #include "core/kernels/molecules/atoms/vectors.hpp"

@@ -1,4 +1,6 @@
-// Positions of stars, a block in registers. Lanes that need more go the general way.
+// Position level of stars of three and four bonds, CH3, NH3 and CH4, a block in registers: Newton's method (theory
+// (15)-(17)) for the multipliers (equations.hpp). Lanes that need more, such as a long step or a coarse move, go the
+// way of trees.
 #pragma once
 
 #include "core/kernels/molecules/elimination_plan.hpp"

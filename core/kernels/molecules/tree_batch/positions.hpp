@@ -1,4 +1,6 @@
-// Position level of a batch of trees: what positions.hpp does with a block of molecules of one shape.
+// Position level of a batch of trees, a different one in each lane: what ../positions.hpp does with a block of
+// molecules of one shape. newton.hpp has the equations (theory (15)-(17), (58)); the order of steps is that of
+// batch.hpp.
 #pragma once
 
 #include "core/kernels/molecules/iterate.hpp"

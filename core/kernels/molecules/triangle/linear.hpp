@@ -1,4 +1,6 @@
-// Forces, given right-hand sides and velocities of triangles.
+// Forces, given right-hand sides and velocities of rigid water and other triangles: A t = b (theory (51)) by the
+// inverse in closed form (56), solution.hpp. A t that is a small difference of adj b is told by the size of its
+// terms; such lanes go to the extended-precision solver.
 #pragma once
 
 #include "core/kernels/arithmetic/thresholds.hpp"

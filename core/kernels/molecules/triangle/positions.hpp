@@ -1,4 +1,6 @@
-// Positions of triangles.
+// Position level of rigid water and other triangles: three atoms, all three distances. Reads a block, hands its
+// three equations to Newton's method (theory (15)-(17), equations.hpp), and writes the moves, multipliers and
+// virial. It needs no memory but registers; lanes that it can't do go to the extended-precision solver.
 #pragma once
 
 #include "core/kernels/molecules/triangle/model.hpp"
