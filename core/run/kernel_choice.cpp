@@ -21,6 +21,7 @@
 // Smallest of several, in turns in one process.
 #include "core/run/kernel_choice.hpp"
 
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 
@@ -73,6 +74,10 @@ struct Sets {
 
 KernelChoice choose_kernels() {
     const Sets sets;
+    if (!sets.best) {  // only where the baseline was left out: no call can have a result
+        std::fputs("holonomic: built without the baseline, and no other kernels of it run on this processor\n", stderr);
+        std::abort();
+    }
     const Kernels &one_chain = sets.one_lane ? *sets.one_lane : *sets.best;
     return {*sets.best, sets.forced ? one_chain : *sets.best, one_chain};  // one lane forced has all that it can
 }
