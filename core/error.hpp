@@ -17,4 +17,12 @@ struct Error {
 
 [[gnu::format(printf, 2, 3)]] Error make_error(Status status, const char *format, ...);
 
+// Throws it, of this bond and atom, or -1.
+[[noreturn]] inline void fail(Error error, int base, std::int64_t bond, std::int64_t atom) {
+    error.bond = bond;
+    error.atom = atom;
+    error.base = base;
+    throw error;
+}
+
 }  // namespace holonomic

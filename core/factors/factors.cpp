@@ -7,6 +7,7 @@
 #include "core/caller/packed_array.hpp"
 #include "core/factors/keep.hpp"
 #include "core/forces.hpp"
+#include "core/index.hpp"
 #include "core/rigid/bodies.hpp"
 #include "core/run/execute.hpp"
 #include "core/run/thread_memory.hpp"
@@ -19,8 +20,6 @@ namespace {
 constexpr std::int64_t alignment = 64, chunk = std::int64_t{1} << 17;  // bytes; doubles of one
 
 constexpr unsigned char any_mark = 1 | left_of_forces;
-
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 void copy(const AtomArray &from, std::int64_t n_atoms, double *to) {
     for (std::int64_t i = 0; i < n_atoms; ++i) read_atom(from, i, to + 3 * i);

@@ -2,17 +2,12 @@
 
 #include <new>
 
+#include "core/index.hpp"
 #include "core/kernels/atom.hpp"
 #include "core/run/execute.hpp"
 #include "core/run/thread_memory.hpp"
 
 namespace holonomic {
-
-namespace {
-
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
-
-}  // namespace
 
 OneMolecule::OneMolecule(const Chains &chains, const Planned &planned, const Molecule &molecule)
     : lambda(at(molecule.n_bonds), 0.0), chains_(chains), planned_(planned), m_(molecule) {}

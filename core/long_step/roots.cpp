@@ -4,13 +4,12 @@
 #include <cmath>
 
 #include "core/caller/box.hpp"
+#include "core/index.hpp"
 #include "core/kernels/atom.hpp"
 
 namespace holonomic {
 
 namespace {
-
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 // Along the path: steps of this part of it, in which no bond is to be off by more than `near` of its length from where
 // the last steps point.

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "core/index.hpp"
 #include "core/molecules/chains.hpp"
 #include "core/molecules/given/batch.hpp"
 #include "core/molecules/given/memory_limit.hpp"
@@ -16,17 +17,6 @@
 namespace holonomic {
 
 namespace {
-
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
-
-long long number(std::int64_t i, int base) { return static_cast<long long>(i + base); }
-
-[[noreturn]] void fail(Error error, int base, std::int64_t bond, std::int64_t atom) {
-    error.bond = bond;
-    error.atom = atom;
-    error.base = base;
-    throw error;
-}
 
 // Numbers within a molecule are kept in 32 bits.
 constexpr std::int64_t most = std::int64_t{1} << 30;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/index.hpp"
 #include "core/molecules/chains.hpp"
 #include "core/molecules/given/batch.hpp"
 #include "core/molecules/given/memory_limit.hpp"
@@ -13,8 +14,6 @@
 namespace holonomic {
 
 namespace {
-
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 Error of_relation(std::int64_t relation, int base, const char *what) {
     return make_error(Status::value, "relation %lld %s", static_cast<long long>(relation + base), what);

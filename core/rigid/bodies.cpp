@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <cstring>
 
+#include "core/index.hpp"
 #include "core/rigid/blocks.hpp"
 #include "core/rigid/system.hpp"
 
 namespace holonomic::rigid {
 
 namespace {
-
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 // FNV-1a over words.
 class Hash {

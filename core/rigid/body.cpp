@@ -1,4 +1,5 @@
 #include "core/rigid/body.hpp"
+#include "core/index.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +9,6 @@
 namespace holonomic::rigid {
 
 namespace {
-
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 using plain::less;
 using plain::square_root;

@@ -1,5 +1,6 @@
 #include "core/rigid/cliques.hpp"
 
+#include "core/index.hpp"
 #include "core/rigid/fit.hpp"
 #include "core/rigid/planar_ring.hpp"
 
@@ -13,8 +14,6 @@
 namespace holonomic::rigid {
 
 namespace {
-
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 class Search {
 public:

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/index.hpp"
 #include "core/rigid/cliques.hpp"
 #include "core/rigid/fit.hpp"
 #include "core/rigid/planar_ring.hpp"
@@ -10,8 +11,6 @@
 namespace holonomic::rigid {
 
 namespace {
-
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 // Bonds of a molecule between atoms that can move.
 class Partners {

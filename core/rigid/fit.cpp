@@ -4,13 +4,12 @@
 #include <cmath>
 #include <limits>
 
+#include "core/index.hpp"
 #include "core/rigid/heights.hpp"
 
 namespace holonomic::rigid {
 
 namespace {
-
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 

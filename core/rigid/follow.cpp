@@ -4,13 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/index.hpp"
 #include "core/rigid/system.hpp"
 
 namespace holonomic::rigid {
 
 namespace {
-
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 bool differs(const PairVector &a, const PairVector &b) {
     const Vector3<double> d = rounded(a - b);

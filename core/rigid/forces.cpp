@@ -1,6 +1,7 @@
 // Accelerations: forces, and the multipliers of given right-hand sides.
 #include <cmath>
 
+#include "core/index.hpp"
 #include "core/rigid/rates.hpp"
 #include "core/rigid/run.hpp"
 #include "core/rigid/verbs.hpp"
@@ -10,8 +11,6 @@
 namespace holonomic::rigid {
 
 namespace {
-
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 struct Outputs {
     double *lambda, *tension;

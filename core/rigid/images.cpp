@@ -5,6 +5,7 @@
 #include <limits>
 #include <unordered_map>
 
+#include "core/index.hpp"
 #include "core/molecules/chains.hpp"
 #include "core/molecules/given/batch.hpp"
 #include "core/molecules/given/find.hpp"
@@ -14,8 +15,6 @@
 namespace holonomic {
 
 namespace {
-
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 void check_images(std::int64_t n_bonds, const std::int64_t *images, int base) {
     constexpr std::int64_t most = std::numeric_limits<std::int32_t>::max();

@@ -5,14 +5,13 @@
 #include <unordered_map>
 #include <unordered_set>
 
+#include "core/index.hpp"
 #include "core/rigid/rank_of_linear.hpp"
 #include "core/rigid/spread.hpp"
 
 namespace holonomic::rigid {
 
 namespace {
-
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 class Search {
 public:

@@ -5,14 +5,13 @@
 #include <unordered_map>
 
 #include "core/error.hpp"
+#include "core/index.hpp"
 #include "core/rigid/heights.hpp"
 #include "core/rigid/rank_of_linear.hpp"
 
 namespace holonomic::rigid {
 
 namespace {
-
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 double distance(const LinearGroup &group, std::size_t i, std::size_t j) {
     double square = 0;

@@ -1,4 +1,5 @@
 #include "core/rigid/linear.hpp"
+#include "core/index.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +8,6 @@
 namespace holonomic::rigid {
 
 namespace {
-
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 // Places as seen from the base: axes one after the other, each through the atom that is farthest from those before.
 class Frame {

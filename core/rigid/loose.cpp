@@ -3,13 +3,12 @@
 #include <cmath>
 #include <utility>
 
+#include "core/index.hpp"
 #include "core/rigid/body.hpp"
 
 namespace holonomic::rigid {
 
 namespace {
-
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 // Vectors over the atoms, which are made orthogonal by Gram and Schmidt's method, the longest one first.
 class Span {

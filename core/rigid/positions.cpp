@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/index.hpp"
 #include "core/rigid/run.hpp"
 #include "core/rigid/verbs.hpp"
 #include "core/rigid/within.hpp"
@@ -10,8 +11,6 @@
 namespace holonomic::rigid {
 
 namespace {
-
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 // Below this residuals are far beyond the rounding of coordinates, and multipliers have all their digits.
 constexpr double exact = 1e-20;

@@ -1,4 +1,5 @@
 #include "core/rigid/relations.hpp"
+#include "core/index.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +7,6 @@
 namespace holonomic::rigid {
 
 namespace {
-
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 class Elimination {
 public:

@@ -4,14 +4,13 @@
 #include <limits>
 #include <type_traits>
 
+#include "core/index.hpp"
 #include "core/long_step/long_steps.hpp"
 #include "core/rigid/system.hpp"
 
 namespace holonomic::rigid {
 
 namespace {
-
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 // Pivots below this part of the diagonal are too inaccurate as doubles; below the other one, rows depend, as they do
 // where less than that is left of one once all others are gone.

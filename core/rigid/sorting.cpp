@@ -5,6 +5,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "core/index.hpp"
 #include "core/molecules/chains.hpp"
 #include "core/rigid/bodies.hpp"
 #include "core/rigid/linear.hpp"
@@ -12,17 +13,6 @@
 namespace holonomic {
 
 namespace {
-
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
-
-long long number(std::int64_t i, int base) { return static_cast<long long>(i + base); }
-
-[[noreturn]] void fail(Error error, int base, std::int64_t bond, std::int64_t atom) {
-    error.bond = bond;
-    error.atom = atom;
-    error.base = base;
-    throw error;
-}
 
 // Groups of things that belong together.
 class Joined {

@@ -1,4 +1,5 @@
 #include "core/rigid/system.hpp"
+#include "core/index.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +8,6 @@
 namespace holonomic::rigid {
 
 namespace {
-
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 PairVector zero() { return {as_pair(0), as_pair(0), as_pair(0)}; }
 PairVector difference(const double *a, const double *b) {

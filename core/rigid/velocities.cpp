@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "core/index.hpp"
 #include "core/rigid/rates.hpp"
 #include "core/rigid/run.hpp"
 #include "core/rigid/verbs.hpp"
@@ -9,8 +10,6 @@
 namespace holonomic::rigid {
 
 namespace {
-
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 struct VelocitiesWork final : Work {
     AtomArray r, v;

@@ -1,4 +1,5 @@
 #include "core/molecules/asked/count.hpp"
+#include "core/index.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -6,8 +7,6 @@
 namespace holonomic {
 
 namespace {
-
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 constexpr const char *too_many =
     "is one too many: the atoms that it and the bonds around it join have fewer freedoms than bonds; "

@@ -4,14 +4,13 @@
 #include <unordered_set>
 #include <vector>
 
+#include "core/index.hpp"
 #include "core/molecules/chains.hpp"
 #include "core/rigid/bodies.hpp"
 
 namespace holonomic {
 
 namespace {
-
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 using Atoms = std::vector<std::int64_t>;
 using Neighbours = std::unordered_map<std::int64_t, Atoms>;

@@ -1,12 +1,11 @@
 #include "core/molecules/asked/labels.hpp"
+#include "core/index.hpp"
 
 #include <cstdio>
 
 namespace holonomic {
 
 namespace {
-
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 std::vector<std::int64_t> copied(std::int64_t n, const std::int64_t *numbers) {
     return numbers ? std::vector<std::int64_t>(numbers, numbers + n) : std::vector<std::int64_t>();

@@ -1,16 +1,11 @@
 // What a set of molecules tells about itself.
 #include <algorithm>
 
+#include "core/index.hpp"
 #include "core/molecules/chains.hpp"
 #include "core/rigid/bodies.hpp"
 
 namespace holonomic {
-
-namespace {
-
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
-
-}  // namespace
 
 std::int64_t Chains::n_molecules() const { return n_chains() + (bodies_ ? bodies_->n_molecules() : 0); }
 

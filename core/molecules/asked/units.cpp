@@ -1,4 +1,5 @@
 // The lanes of a chunk of work, as the kernels see them.
+#include "core/index.hpp"
 #include "core/molecules/chains.hpp"
 
 namespace holonomic {
@@ -7,8 +8,6 @@ namespace {
 
 // Positions, velocities, forces and results of so many bonds, 96 bytes each, fill a second-level cache.
 constexpr std::int64_t bonds_in_cache = 16384;
-
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/index.hpp"
 #include "core/molecules/chains.hpp"
 #include "core/molecules/given/batch.hpp"
 #include "core/molecules/given/closable.hpp"
@@ -10,8 +11,6 @@
 namespace holonomic {
 
 namespace {
-
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 void check_closable(const Chains &chains, const Molecule &m, const double *length) {
     Unclosable found;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/index.hpp"
 #include "core/molecules/chains.hpp"
 #include "core/molecules/given/batch.hpp"
 #include "core/molecules/given/memory_limit.hpp"
@@ -10,10 +11,6 @@
 namespace holonomic {
 
 namespace {
-
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
-
-long long number(std::int64_t i, int base) { return static_cast<long long>(i + base); }
 
 // A caller's number counted from 0; -1 if it is below the base, however far (the least number minus 1 would overflow).
 std::int64_t from_zero(std::int64_t i, int base) { return i < base ? -1 : i - base; }

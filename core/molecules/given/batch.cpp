@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "core/index.hpp"
 #include "core/molecules/given/closable.hpp"
 #include "core/molecules/given/memory_limit.hpp"
 #include "core/molecules/planned/plan_memory.hpp"
@@ -12,8 +13,6 @@
 namespace holonomic {
 
 namespace {
-
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 bool ascend(const std::int64_t *x, std::int64_t n) {
     for (std::int64_t i = 1; i < n; ++i)

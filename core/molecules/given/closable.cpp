@@ -1,4 +1,5 @@
 #include "core/molecules/given/closable.hpp"
+#include "core/index.hpp"
 
 #include <algorithm>
 #include <vector>
@@ -9,8 +10,6 @@ namespace {
 
 // A line is refused by the calls that meet it; lengths that make one may be rounded.
 constexpr double rounding = 1e-12;
-
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 bool is_longer(double side, double others) { return side > others * (1 + rounding); }
 

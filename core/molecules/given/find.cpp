@@ -4,14 +4,13 @@
 #include <cstdlib>
 #include <limits>
 
+#include "core/index.hpp"
 #include "core/molecules/given/numbering.hpp"
 #include "core/molecules/given/recognise.hpp"
 
 namespace holonomic {
 
 namespace {
-
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 using Numbers = std::vector<std::int32_t>;
 

@@ -4,11 +4,11 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/index.hpp"
+
 namespace holonomic {
 
 using Numbers = std::vector<std::int32_t>;
-
-inline std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 
 struct Lists {
     Numbers start, item;

@@ -3,15 +3,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/index.hpp"
 #include "core/molecules/asked/count.hpp"
 
 namespace holonomic {
-
-namespace {
-
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
-
-}  // namespace
 
 void Recogniser::sort_few() {
     for (std::size_t k = 1; k < draft_.bonds.size(); ++k) {

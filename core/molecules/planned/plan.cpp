@@ -5,6 +5,7 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "core/index.hpp"
 #include "core/kernels/molecules/elimination_plan.hpp"
 #include "core/molecules/chains.hpp"
 #include "core/molecules/planned/way.hpp"
@@ -22,8 +23,6 @@ static_assert(widest <= most_lanes, "");
 constexpr std::size_t loose_window = 4096;  // molecules
 // Different trees are sorted within so many bonds, so that those that are worked on together are close in memory.
 constexpr std::int64_t batch_window = 16384;
-
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 

@@ -2,13 +2,12 @@
 
 #include <algorithm>
 
+#include "core/index.hpp"
 #include "core/kernels/call.hpp"
 
 namespace holonomic {
 
 namespace {
-
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 std::int32_t children_of(const EliminationPlan &s, std::int32_t slot) {
     return s.child_start[slot + 1] - s.child_start[slot];

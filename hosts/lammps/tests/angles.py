@@ -1,12 +1,11 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-only
 """Molecules held by all bonds and all angles, and bodies that share an atom: scenes for LAMMPS, and their trajectory by SHAKE.
 
-    angles.py make MOLECULE N [DECIMALS]   writes data, coefficients.lmp and bodies.txt: N^3 molecules on a lattice, turned at
-                                           random; angles in degrees, rounded to so many decimals
-    angles.py check DUMP DT K              the first molecule of the dump's first step, tied by springs K to where data has it,
-                                           goes on to the last step by velocity Verlet with SHAKE, constraint after constraint
-                                           until nothing moves, and by RATTLE; says how far the dump is from there
+    make     writes data, coefficients.lmp and bodies.txt: N^3 molecules on a lattice, turned at random; angles in degrees, rounded
+             to so many decimals
+    check    the first molecule of the dump's first step, tied by springs K to where data has it, goes on to the last step by
+             velocity Verlet with SHAKE, constraint after constraint until nothing moves, and by RATTLE: how far the dump is from
+             there, and how far it came
 
 Python's own arithmetic, and nothing of the library. An atom in the plane of its three neighbours, or on the line of its two, is
 held where these are, r_0 = sum c_k r_k, as its distances do not say it to first order.
@@ -277,17 +276,5 @@ def check(dump, dt, strength):
             return abs(off) / squares[k]
 
         sweep(pairs, masses, centres, v, rate)
-    print("positions", max(math.dist(r[a], last[a][:3]) for a in masses))
-    print("velocities", max(math.dist(v[a], last[a][3:]) for a in masses))
-    print("moved", max(math.dist(first[a][:3], last[a][:3]) for a in masses))
-
-
-def main():
-    if sys.argv[1] == "make":
-        make(sys.argv[2], int(sys.argv[3]), int(sys.argv[4]) if len(sys.argv) > 4 else 12)
-    else:
-        check(sys.argv[2], float(sys.argv[3]), float(sys.argv[4]))
-
-
-if __name__ == "__main__":
-    main()
+    return (max(math.dist(r[a], last[a][:3]) for a in masses), max(math.dist(v[a], last[a][3:]) for a in masses),
+            max(math.dist(first[a][:3], last[a][:3]) for a in masses))
