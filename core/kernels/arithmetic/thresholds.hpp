@@ -48,6 +48,9 @@ constexpr double most_uneven = 128, least_uneven = 9;
 constexpr double least_light = 3, least_light_to_move = 8;
 constexpr double most_parts = 12;
 constexpr double most_uneven_light = 20;
+// There t_k = (y_k - c D_k.p) / a_k has the roundings of y_k over w_k, but the lightest of the other atoms decides how
+// large it is. In Newton's method its inverse mass may be so many times that of the heaviest one.
+constexpr double most_unequal = 64;
 
 // Rings (57b): how many roundings of the diagonal elements may be taken off, and what pivots must keep of these, so
 // that none is zero.

@@ -17,7 +17,8 @@ namespace holonomic::HOL_ISA::graph {
 template <int N, class V>
 struct StarKind : StarMasses<N, V> {
     V a2[N], per_a2[N], a_min, a_max, per_a_min;
-    unsigned light;  // lanes whose centre is light to Newton's method
+    unsigned light;    // lanes whose centre is light to Newton's method
+    unsigned unequal;  // such lanes whose other masses are too far apart for four_bonds.hpp
     void set(const MoleculeLane *lane, int used, int centre) {
         StarMasses<N, V>::set(lane, used, centre);
         a_min = Width<V>::all(1e300);
@@ -31,11 +32,16 @@ struct StarKind : StarMasses<N, V> {
             per_a2[k] = Width<V>::all(1) / a2[k];
         }
         per_a_min = Width<V>::all(1) / a_min;
-        light = 0;
+        light = unequal = 0;
         for (int i = 0; N == 4 && i < used; ++i) {
-            double least = Width<V>::get(this->w[1], i);
-            for (int k = 2; k <= N; ++k) least = min(Width<V>::get(this->w[k], i), least);
-            light |= unsigned(Width<V>::get(this->w[0], i) > least_light_to_move * least) << i;
+            double least = Width<V>::get(this->w[1], i), most = least;
+            for (int k = 2; k <= N; ++k) {
+                const double w_k = Width<V>::get(this->w[k], i);
+                least = min(w_k, least);
+                most = max(w_k, most);
+            }
+            if (!(Width<V>::get(this->w[0], i) > least_light_to_move * least)) continue;
+            (most > most_unequal * least ? unequal : light) |= 1u << i;
         }
     }
 };

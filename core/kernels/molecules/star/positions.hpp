@@ -1,6 +1,6 @@
 // Position level of stars of three and four bonds, CH3, NH3 and CH4, a block in registers: Newton's method (theory
-// (15)-(17)) for the multipliers (equations.hpp). Lanes that need more, such as a long step or a coarse move, go the
-// way of trees.
+// (15)-(17)) for the multipliers (equations.hpp). Lanes that need more, such as a long step or a coarse move, or a
+// light centre among very unequal masses, go the way of trees.
 #pragma once
 
 #include "core/kernels/molecules/elimination_plan.hpp"
@@ -138,11 +138,13 @@ struct StarPositionsVerb {
                    MaskOf<V> in_use) const {
         const StarPositions<where, N, V> ordinary = {call, atoms, lane, kind, tally};
         if constexpr (N == 4) {
-            if (__builtin_expect(kind.light != 0, 0)) {
+            if (__builtin_expect((kind.light | kind.unequal) != 0, 0)) {
                 const StarAtoms<anywhere, N, V> any_atoms = {atoms.at, atoms.centre};
                 const StarPositions<anywhere, N, V, LightStarModel<V>> light = {call, any_atoms, lane, kind, tally};
-                const MaskOf<V> lights = Width<V>::of_bits(kind.light), others = in_use & ~lights;
-                return light.solve(in_use & lights) | (any(others) ? ordinary.solve(others) : 0);
+                const MaskOf<V> lights = Width<V>::of_bits(kind.light),
+                                others = in_use & ~Width<V>::of_bits(kind.light | kind.unequal);
+                return (any(in_use & lights) ? light.solve(in_use & lights) : 0) |
+                       (any(others) ? ordinary.solve(others) : 0);
             }
         }
         return ordinary.solve(in_use);
