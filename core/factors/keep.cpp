@@ -19,7 +19,7 @@ struct KeptWork : Work {
     std::int64_t long_bytes(std::int64_t n_bonds) const override {
         return kernels_for_one_chain().scratch_bytes(n_bonds);
     }
-    static bool has_forces_apart(const MoleculeUnit &unit) {
+    static bool is_for_sides_alone(const MoleculeUnit &unit) {
         return unit.elimination->way.given == Way::sparse_ldl && unit.elimination->way.forces != Way::sparse_ldl;
     }
     bool is_left(const MoleculeUnit &unit) const {
@@ -38,7 +38,7 @@ struct KeepWork final : KeptWork {
     void unit(const MoleculeUnit &unit, int, double *scratch, Tally &tally) const override {
         if (is_left(unit)) return;
         k.kept.keep_molecules(call, unit, scratch, tally);
-        for (std::int64_t i = 0; has_forces_apart(unit) && i < unit.count; ++i) {
+        for (std::int64_t i = 0; is_for_sides_alone(unit) && i < unit.count; ++i) {
             unsigned char &mark = left[lane_of(unit, i).molecule];
             if (!mark) mark = left_of_forces;
         }
@@ -64,7 +64,7 @@ struct SolveWork final : KeptWork {
         kernels(unit).kept.solve_chains(calls[where], unit, scratch, tally);
     }
     void unit(const MoleculeUnit &unit, int where, double *scratch, Tally &tally) const override {
-        if (!k.kept.is_kept(*unit.elimination) || (!calls[where].rhs && has_forces_apart(unit))) return;
+        if (!k.kept.is_kept(*unit.elimination) || (!calls[where].rhs && is_for_sides_alone(unit))) return;
         k.kept.solve_molecules(calls[where], unit, scratch, tally);
     }
     void long_chain(const Lane &lane, int where, const Team &, double *store, Tally &tally) const override {

@@ -30,7 +30,7 @@ struct Lane {
     int64_t element[4];  // of chains of at most three bonds: where each atom's first component stands in packed arrays
 };
 
-// A chunk of work: chains of at most longest_lane bonds, or a single longer one.
+// What core hands down at once: chains of at most longest_lane bonds, or a single longer one.
 struct Unit {
     const Lane *lanes;
     int64_t count;
@@ -63,9 +63,9 @@ struct LongTeam {
                 void (*body)(const void *context, int64_t j, double *scratch, Tally &part), const void *context);
 };
 
-// A chunk of work: molecules of one shape; masses and lengths may differ among them. Or batches of trees, whose trees
-// are the lanes, one after the other, none regular: for verbs that work on such, and `elimination` is that of the
-// first.
+// The same of other shapes: molecules of one shape; masses and lengths may differ among them. Or batches of trees,
+// whose trees are the lanes, one after the other, none regular: for verbs that work on such, and `elimination` is that
+// of the first.
 struct MoleculeUnit {
     const EliminationPlan *elimination;
     const MoleculeLane *lanes;

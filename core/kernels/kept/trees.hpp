@@ -26,8 +26,7 @@ struct KeptWay {
     }
 };
 
-// A solve of a block. In molecules that go in lanes the children of a slot are slots that
-// follow each other.
+// A solve of a block. In molecules that go in lanes the children of a slot are slots that follow each other.
 template <class V>
 struct KeptTreesSolve {
     const EliminationPlan &s;
@@ -44,10 +43,11 @@ struct KeptTreesSolve {
           flagged(reinterpret_cast<int32_t *>(memory.values(plan.n_atoms))), per_cancelled2(cancelled) {}
 
     int children(int32_t slot) const { return s.child_start[slot + 1] - s.child_start[slot]; }
-    // Where the places of a slot's children begin, of which it has some: those of trees stand in the order of the slots
-    // above them, those of a ring's atoms do not.
+    // Where the places of a slot's children begin: those of trees stand in the order of the slots above them, those of
+    // a ring's atoms do not.
     int32_t first_child(int32_t slot) const {
-        return slot < s.n_tree ? s.child_start[slot] : s.child[s.child_start[slot]];
+        const int32_t start = s.child_start[slot];
+        return slot < s.n_tree || start == s.child_start[slot + 1] ? start : s.child[start];
     }
     // Which bond of a ring is before the one in a slot.
     int32_t before(int32_t slot) const { return slot == s.n_tree ? s.n_bonds - 1 : slot - 1; }
@@ -102,7 +102,7 @@ struct KeptTreesSolve {
     // Looks again at the bonds of atoms at which one may be cancelling. Returns the lanes in which none is.
     inline __attribute__((noinline)) unsigned look_again(Molecules<V> x, int32_t n) const {
         for (int32_t i = 0; i < n; ++i) {
-            const int32_t slot = flagged[i], k = children(slot), first = k > 0 ? first_child(slot) : 0;
+            const int32_t slot = flagged[i], k = children(slot), first = first_child(slot);
             const bool of_ring = slot >= s.n_tree;
             const V shared = shared_error(slot);
             for (int32_t a = of_ring ? -2 : -1; a < k; ++a) {
@@ -189,7 +189,7 @@ private:
             choose_number<0, bare ? 0 : most_on_ring>(bare ? 0 : children(slot), [&](auto known) HOL_FORCED {
                 if constexpr (known > 0) {
                     V y_to = value[place].t, y_from = value[slot].t;
-                    for_children<known, known>(slot, s.child[s.child_start[slot]], known, [&](int a, V y) HOL_FORCED {
+                    for_children<known, known>(slot, first_child(slot), known, [&](int a, V y) HOL_FORCED {
                         y_to = mul_add(reach[a], y, y_to);
                         y_from = mul_add(reach[known + a], y, y_from);
                     });
@@ -264,7 +264,7 @@ private:
             const int32_t to = before(slot);
             T2 = mul_add(kept.bond[to].q, own2(value[to]), kept.bond[slot].q * own2(value[slot]));
         }
-        for (int32_t a = 0, c = k > 0 ? first_child(slot) : 0; a < k; ++a, ++c)
+        for (int32_t a = 0, c = first_child(slot); a < k; ++a, ++c)
             T2 = mul_add(kept.bond[c].q, value[c].t * value[c].t, T2);
         return shared_error(slot, k, T2);
     }
@@ -296,7 +296,7 @@ private:
     template <int k, bool pulled>
     inline HOL_FORCED void down_ring_joint(int32_t slot, const V *reach, V t, V t2, V behind, V behind2,
                                            Vector3<V> *pull, KeptWay<V> &way) const {
-        const int32_t first = k > 0 ? s.child[s.child_start[slot]] : 0;
+        const int32_t first = first_child(slot);
         const KeptBond<V> &to = kept.bond[before(slot)], &from = kept.bond[slot], *const bond = kept.bond + first;
         KeptValue<V> *const of = value + first;
         V T2 = mul_add(to.q, t2, from.q * behind2);

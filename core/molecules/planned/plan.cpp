@@ -226,7 +226,7 @@ private:
                 if (one.where != head.where || one.window != head.window) break;
                 if (one.shape != head.shape && !one.window) break;
                 if (end > first && works_alone(one.shape, one.n_bonds)) break;
-                if (end > first && (end - first) % at(loose_piece) == 0 && bonds >= loose_piece_bonds) break;
+                if (end > first && (end - first) % at(loose_chunk) == 0 && bonds >= loose_chunk_bonds) break;
                 const Group &group = groups_[at(one.group)];
                 if (chains)
                     plan_->loose_chains.push_back(chains_.lane_of(group, one.index, one.stage));

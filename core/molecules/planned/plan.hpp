@@ -66,6 +66,6 @@ struct Plan {
 
 // Loose molecules are worked on in chunks of so many, or of a multiple that has at least so many bonds: what is done
 // once a chunk took a tenth of the time of single bonds in chunks of 64.
-constexpr std::int64_t loose_piece = 64, loose_piece_bonds = 512;
+constexpr std::int64_t loose_chunk = 64, loose_chunk_bonds = 512;
 
 }  // namespace holonomic
