@@ -42,8 +42,12 @@ struct FourBonds {
         trace = M.trace();
     }
 
-    // The lanes in which N is so even that it loses few digits: the bonds point everywhere.
-    inline HOL_FORCED MaskOf<V> is_even() const { return less(trace * N.trace(), Width<V>::all(most_uneven_light)); }
+    // The lanes in which N is so even that it loses few digits: the bonds point everywhere. An N that has lost all may
+    // have any trace.
+    inline HOL_FORCED MaskOf<V> is_even() const {
+        const V uneven = trace * N.trace();
+        return less(uneven, Width<V>::all(most_uneven_light)) & less(Width<V>::all(least_uneven - 1), uneven);
+    }
 
     // Finds t, and F + p.
     inline HOL_FORCED void solve(const V *y, const Vector3<V> &force, V *t, Vector3<V> &total) const {

@@ -85,6 +85,7 @@ template <class V>
 struct Star<4, V> {
     const StarMasses<4, V> &m;
     Vector3<V> d[4], force = {}, total;  // of the centre: its own, and with the sum of t_k d_k
+    bool is_pulled = false;              // there is a force
     V q[4];
     FourBonds<V> equations;
 
@@ -99,7 +100,12 @@ struct Star<4, V> {
     // What the centre's force adds to w_k f_k in right-hand sides.
     inline HOL_FORCED Vector3<V> of_centre(const Vector3<V> &f) {
         force = f;
+        is_pulled = true;
         return Vector3<V>{};
+    }
+
+    inline HOL_FORCED MaskOf<V> is_light() const {
+        return less(least_light * min(min(m.w[1], m.w[2]), min(m.w[3], m.w[4])), m.w[0]);
     }
 
     // The lanes in which t of y is good. (S^-1)_kk is at least 1 / S_kk, and at most 1 / a_k.
@@ -121,19 +127,25 @@ struct Star<4, V> {
             least = k == 0 ? left : min(left, least);
         }
         MaskOf<V> fine = ~less(least, V{});
-        const MaskOf<V> light = less(least_light * min(min(m.w[1], m.w[2]), min(m.w[3], m.w[4])), m.w[0]);
+        const MaskOf<V> light = is_light();
         if (__builtin_expect(any(light), 0)) fine = (fine & ~light) | (light & equations.keeps_digits(q, y));
         return finite(sum) & fine &
                ordinary_squares(min(min(a[0], a[1]), min(a[2], a[3])), max(max(a[0], a[1]), max(a[2], a[3])));
     }
 
+    // The pulls on a light centre are small beside their terms, and take away most of its force; those on another one
+    // may be small beside its force.
     inline HOL_FORCED void pull(const V *t, Vector3<V> *g) const {
-        g[0] = total - force;
         HOL_UNROLL
         for (int k = 0; k < 4; ++k) {
             const Vector3<V> of_bond = t[k] * d[k];
             g[k + 1] = {-of_bond.x, -of_bond.y, -of_bond.z};
         }
+        g[0] = total;
+        if (!is_pulled) return;
+        const MaskOf<V> light = is_light();
+        const Vector3<V> left = total - force, sum = (g[1] + g[2]) + (g[3] + g[4]);
+        g[0] = {select(light, left.x, -sum.x), select(light, left.y, -sum.y), select(light, left.z, -sum.z)};
     }
 };
 
