@@ -94,6 +94,9 @@ def main():
     if options.protein:
         scenes = {f"{options.protein.stem} {bonds}": protein(of_file(options.protein), constraints=bonds, nsteps=1000)
                   for bonds in ("h-bonds", "all-bonds")}
+    for name in options.scenes:
+        if name not in scenes:
+            arguments.error(f"no scene {name}; there are: {', '.join(scenes)}")
     for name in options.scenes or scenes:
         compare(name, scenes[name], options)
 
