@@ -612,7 +612,8 @@ HOL_API int hol_chains_check(const hol_chains *chains, const double *r, hol_whic
 /**
  * Number of threads that a call may use, >= 1. The default is 1. Without OpenMP at build time all calls use one.
  * Threads share pieces of 4000 bonds, whatever the molecules; a call with fewer than 4096 bonds per thread starts
- * fewer. One long chain is shared, too, and one large molecule.
+ * fewer. One long chain is shared, too, and one large molecule. A call whose threads came late, because other programs
+ * use their processors, makes the next ones use one thread for a while. Results do not depend on the number of threads.
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE. Not thread-safe on one handle. Since 0.1.
  */
 HOL_API int hol_chains_set_threads(hol_chains *chains, int n_threads);

@@ -6,17 +6,13 @@
 #include <cstdio>
 #include <new>
 
-#include "core/caller/environment.hpp"
 #include "core/rigid/blocks.hpp"
 #include "core/rigid/parts.hpp"
 #include "core/run/bond_words.hpp"
 #include "core/run/kernel_choice.hpp"
 #include "core/run/outcomes.hpp"
 #include "core/run/thread_memory.hpp"
-
-#ifdef _OPENMP
-#include <omp.h>
-#endif
+#include "core/run/threads.hpp"
 
 namespace holonomic::rigid {
 
@@ -201,20 +197,13 @@ Found run(const Chains &chains, const Work &work) {
     if (n_threads <= 1 || work.is_in_order()) {
         run_all();
     } else {
-#ifdef _OPENMP
         std::atomic<std::int64_t> next{0};
-        const CallersEnvironment outside;
         // A thread that gets no memory leaves its share to the others; the calling thread has its own.
-#pragma omp parallel num_threads(n_threads)
-        {
-            const DefaultEnvironment own_environment;
+        on_threads(n_threads, [&](int) {
             char *const memory = static_cast<char *>(thread_memory(Keep::rigid, all.bytes));
             Block one(chains, work, memory, outcomes);
             for (std::int64_t j; memory && (j = next.fetch_add(1)) < n_blocks;) parts[j] = one.run(j * block);
-        }
-#else
-        run_all();
-#endif
+        });
     }
     Found total{empty_tally(), Outcome::good};
     for (std::int64_t j = 0; j < n_blocks; ++j) add(total, parts[j]);

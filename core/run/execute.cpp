@@ -5,17 +5,13 @@
 #include <cmath>
 #include <new>
 
-#include "core/caller/environment.hpp"
 #include "core/error.hpp"
 #include "core/kernels/molecules/tree_batch/batch.hpp"
 #include "core/molecules/planned/way.hpp"
 #include "core/run/lane.hpp"
 #include "core/run/outcomes.hpp"
 #include "core/run/thread_memory.hpp"
-
-#ifdef _OPENMP
-#include <omp.h>
-#endif
+#include "core/run/threads.hpp"
 
 namespace holonomic {
 
@@ -27,7 +23,6 @@ constexpr std::int64_t bonds_per_thread = 4096;
 double *scratch_memory(std::int64_t bytes) { return static_cast<double *>(thread_memory(Keep::scratch, bytes)); }
 double *store_memory(std::int64_t bytes) { return static_cast<double *>(thread_memory(Keep::store, bytes)); }
 
-#ifdef _OPENMP
 Tally *tallies(Keep what, std::int64_t n) {
     void *const memory = thread_memory(what, n * static_cast<std::int64_t>(sizeof(Tally)));
     if (!memory) throw std::bad_alloc();
@@ -53,18 +48,15 @@ void share(int n_threads, std::int64_t scratch_bytes, std::int64_t store_bytes, 
         shares[i].end = n * (i + 1) / n_shares;
         shares[i].next.store(shares[i].first, std::memory_order_relaxed);
     }
-    const CallersEnvironment outside;
-#pragma omp parallel num_threads(n_threads)
-    {
-        const DefaultEnvironment own_environment;
+    on_threads(n_threads, [&](int thread) {
         double *const scratch = scratch_memory(scratch_bytes);
-        const int own = static_cast<int>(static_cast<std::int64_t>(omp_get_thread_num()) * n_shares / n_threads);
+        const int own = static_cast<int>(static_cast<std::int64_t>(thread) * n_shares / n_threads);
         for (int i = 0; scratch && (store_bytes == 0 || store_memory(store_bytes)) && i < n_shares; ++i) {
             Share &of = shares[(own + i) % n_shares];
             for (std::int64_t j; (j = of.next.fetch_add(1, std::memory_order_relaxed)) < of.end;)
                 body(order == Team::forwards ? j : of.first + of.end - 1 - j, scratch);
         }
-    }
+    });
 }
 
 // A single molecule whose pieces are shared among the threads: a large one, or one of few, so that not every thread has
@@ -78,7 +70,6 @@ bool is_shared_molecule(const Plan &plan, std::int64_t p, int n_threads, bool pa
     if (large && has_shares(s, paths)) return true;
     return n > 1 && (n >= 8 * n_threads || n_molecules < 4 * n_threads);
 }
-#endif
 
 // Bonds of a chain that is worked on in segments, 0 if the chunk is none.
 std::int64_t long_chain_bonds(const Chains &chains, const Plan &plan, std::int64_t p) {
@@ -195,9 +186,7 @@ public:
         double *const own_scratch = scratch_of_this_thread(scratch_bytes_);
         const std::int64_t store = std::max(own_store_, shared_store_);
         if (store > 0 && !store_memory(store)) throw std::bad_alloc();
-#ifdef _OPENMP
         if (n_threads_ > 1) return run_on_threads(own_scratch, total);
-#endif
         if (n_chunks_ == 1) return work_on(0, own_scratch, total, nullptr);
         for (std::int64_t p = 0; p < n_chunks_; ++p) {
             Tally tally = empty_tally();
@@ -279,7 +268,6 @@ private:
 
     OutcomeOf *outcome_of(std::int64_t molecule) const { return outcomes_ ? outcomes_ + molecule : nullptr; }
 
-#ifdef _OPENMP
     bool is_shared(std::int64_t p) const {
         if (is_shared_molecule(plan_, p, n_threads_, work_.shares_paths())) return true;
         if (plan_.longest <= longest_lane) return false;
@@ -311,7 +299,6 @@ private:
         }
         for (std::int64_t p = 0; p < n_chunks_; ++p) add(total, parts[p]);
     }
-#endif
 
     const Chains &chains_;
     const Plan &plan_;
@@ -327,7 +314,6 @@ private:
 void Team::run(std::int64_t n, Order order, Tally &total, void (*call)(const void *, std::int64_t, double *, Tally &),
                const void *body) const {
     const auto at = [&](std::int64_t i) { return order == forwards ? i : n - 1 - i; };
-#ifdef _OPENMP
     if (n_threads_ > 1) {
         Tally *const parts = tallies(Keep::block_tallies, n);
         share(n_threads_, scratch_bytes_, 0, n, order, [&](std::int64_t j, double *scratch) {
@@ -338,9 +324,6 @@ void Team::run(std::int64_t n, Order order, Tally &total, void (*call)(const voi
         for (std::int64_t i = 0; i < n; ++i) add(total, parts[at(i)]);
         return;
     }
-#else
-    static_cast<void>(n_threads_);
-#endif
     for (std::int64_t i = 0; i < n; ++i) {
         Tally tally = empty_tally();
         call(body, at(i), scratch_memory(scratch_bytes_), tally);
