@@ -26,10 +26,10 @@ module holonomic
                           HOL_PHYSICAL, HOL_SHAPE_CHAIN, HOL_SHAPE_OTHER, HOL_SHAPE_RIGID, HOL_SHAPE_RING, &
                           HOL_SHAPE_TREE, &
                           HOL_SHAPE_TRIANGLE, HOL_UNIT_DIAGONAL
+   use holonomic_chains, only: hol_chains
    use holonomic_equimomental, only: equimomental_points
    use holonomic_factors, only: hol_factors
    use holonomic_inverse, only: hol_inverse
-   use holonomic_metric, only: chain_set_metric
    use holonomic_status, only: text_of
    use holonomic_tridiagonal, only: inverse_band, inverse_entry, log_det, partition_of_equal_masses, &
                                     partition_of_masses, pivots, solve
@@ -46,11 +46,6 @@ module holonomic
              HOL_NEVER, HOL_AT_START, HOL_ALWAYS, HOL_PHYSICAL, HOL_UNIT_DIAGONAL, HOL_SHAPE_CHAIN, &
              HOL_SHAPE_TREE, HOL_SHAPE_RING, HOL_SHAPE_TRIANGLE, HOL_SHAPE_OTHER, &
              HOL_SHAPE_RIGID
-
-   ! Molecules with rigid bonds. The variable that was created owns them until its destroy: there is no finalizer. A copy
-   ! refers to the same molecules, owns nothing, and must not be used after the owner's destroy, but to be destroyed itself.
-   type, extends(chain_set_metric) :: hol_chains
-   end type
 
    interface hol_tridiagonal_pivots
       procedure :: pivots

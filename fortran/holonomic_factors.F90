@@ -7,7 +7,7 @@ module holonomic_factors
    use holonomic_c, only: hol_chains_n_atoms, hol_chains_n_bonds, hol_factors_create, hol_factors_destroy, &
                           hol_factors_forces_view, hol_factors_solve, hol_factors_solve_view, hol_factors_update_view, &
                           HOL_ERR_NULL, HOL_ERR_VALUE
-   use holonomic_chains, only: chain_set
+   use holonomic_chains, only: hol_chains
    use holonomic_ownership, only: ownership
    use holonomic_place, only: list_of, mode_of, place, tensor
    use holonomic_status, only: failure, settle
@@ -58,7 +58,7 @@ contains
 
    subroutine create(self, chains, stat, errmsg)
       class(hol_factors), intent(inout) :: self
-      class(chain_set), intent(in) :: chains
+      class(hol_chains), intent(in) :: chains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem

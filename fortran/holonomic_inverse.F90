@@ -6,7 +6,7 @@ module holonomic_inverse
    use holonomic_c, only: hol_chains_n_atoms, hol_inverse_band, hol_inverse_condition, hol_inverse_create_view, &
                           hol_inverse_destroy, hol_inverse_entry, hol_inverse_error_bound_view, hol_inverse_matrix, &
                           hol_inverse_n_bonds, hol_inverse_row, HOL_ERR_NULL, HOL_ERR_VALUE, HOL_UNIT_DIAGONAL
-   use holonomic_chains, only: chain_set
+   use holonomic_chains, only: hol_chains
    use holonomic_ownership, only: ownership
    use holonomic_place, only: enough, list_of, number_at, place
    use holonomic_status, only: decimal, failure, settle
@@ -71,7 +71,7 @@ contains
    subroutine create_at(self, problem, chains, molecule, at_r, stat, errmsg)
       class(hol_inverse), intent(inout) :: self
       type(failure), intent(inout) :: problem
-      class(chain_set), intent(in) :: chains
+      class(hol_chains), intent(in) :: chains
       integer(c_int64_t), intent(in) :: molecule
       type(place), intent(in), target :: at_r
       integer, intent(out), optional :: stat

@@ -24,11 +24,13 @@ compile() {
 }
 
 # In a program's step nothing is copied: what a compiler says of temporary arrays concerns other procedures.
+before_the_steps='/((chains_)?(bonds|groups|images|settings|outcomes)\.inc|box\.inc|holonomic_(chains|status)\.[Ff]90):'
 while read -r file; do
     compile -O2 -c "$top/fortran/$file"
-    case $file in holonomic_bonds.* | holonomic_images.* | holonomic_rigid.* | holonomic_linear.* | holonomic_settings.* | holonomic_chains.* | \
-        holonomic_status.* | holonomic_outcomes.*) continue ;; esac
-    if grep -B4 -e "-Warray-temporaries" log; then echo "$file makes a temporary array"; exit 1; fi
+    if grep -B4 -e "-Warray-temporaries" log | grep '^/.*:$' | grep -Ev "$before_the_steps"; then
+        echo "that makes a temporary array"
+        exit 1
+    fi
 done <"$order"
 module=$(ls ./*.o)
 link() { # link PROGRAM SOURCE... OBJECT...
