@@ -16,38 +16,51 @@ namespace {
 class Partners {
 public:
     using Atom = std::int32_t;
+    using Partner = std::pair<Atom, std::int32_t>;  // and the bond
+    struct List {
+        const Partner *first, *last;
+        const Partner *begin() const { return first; }
+        const Partner *end() const { return last; }
+        std::ptrdiff_t size() const { return last - first; }
+    };
+
     Partners(const holonomic::Shape &shape, const double *w, const double *lengths)
-        : lengths_(lengths), of_(at(shape.n_atoms)) {
-        for (std::int32_t k = 0; k < shape.n_bonds; ++k) {
-            const std::int32_t i = shape.i(k), j = shape.j(k);
-            if (!(w[i] > 0 && w[j] > 0)) continue;
-            of_[at(i)].emplace_back(j, k);
-            of_[at(j)].emplace_back(i, k);
-        }
-        for (auto &list : of_) std::sort(list.begin(), list.end());
+        : lengths_(lengths), start_(at(shape.n_atoms) + 1) {
+        const auto for_bonds = [&](const auto &each) {
+            for (std::int32_t k = 0; k < shape.n_bonds; ++k)
+                if (const std::int32_t i = shape.i(k), j = shape.j(k); w[i] > 0 && w[j] > 0)
+                    each(i, j, k), each(j, i, k);
+        };
+        for_bonds([&](Atom i, Atom, std::int32_t) { ++start_[at(i) + 1]; });
+        for (std::int32_t i = 0; i < shape.n_atoms; ++i) start_[at(i) + 1] += start_[at(i)];
+        partner_.resize(at(start_.back()));
+        std::vector<std::int32_t> end(start_.begin(), start_.end() - 1);
+        for_bonds([&](Atom i, Atom j, std::int32_t k) { partner_[at(end[at(i)]++)] = {j, k}; });
+        for (std::int32_t i = 0; i < shape.n_atoms; ++i)
+            std::sort(partner_.begin() + start_[at(i)], partner_.begin() + end[at(i)]);
     }
     template <class Each>
     void for_partners(Atom atom, const Each &each) const {
-        for (const auto &partner : of_[at(atom)]) each(partner.first);
+        for (const Partner &partner : of(atom)) each(partner.first);
     }
-    Atom with_fewer(Atom i, Atom j) const { return of_[at(i)].size() < of_[at(j)].size() ? i : j; }
+    Atom with_fewer(Atom i, Atom j) const { return of(i).size() < of(j).size() ? i : j; }
     double square(Atom i, Atom j) const {
-        const auto &list = of_[at(i)];
-        const auto found = std::lower_bound(list.begin(), list.end(), std::make_pair(j, std::int32_t{0}));
+        const List list = of(i);
+        const Partner *const found = std::lower_bound(list.begin(), list.end(), Partner{j, 0});
         if (found == list.end() || found->first != j) return -1;
         return lengths_[found->second] * lengths_[found->second];
     }
-    const std::vector<std::pair<std::int32_t, std::int32_t>> &of(Atom atom) const { return of_[at(atom)]; }
+    List of(Atom atom) const { return {partner_.data() + start_[at(atom)], partner_.data() + start_[at(atom) + 1]}; }
     std::vector<double> lengths_around(Atom) const {
         std::vector<double> all;
-        for (const auto &list : of_)
-            for (const auto &partner : list) all.push_back(lengths_[partner.second]);
+        for (const Partner &partner : partner_) all.push_back(lengths_[partner.second]);
         return each_once(all);
     }
 
 private:
     const double *const lengths_;
-    std::vector<std::vector<std::pair<std::int32_t, std::int32_t>>> of_;  // atoms and bonds
+    std::vector<std::int32_t> start_;  // by atom
+    std::vector<Partner> partner_;     // of each atom in ascending order
 };
 
 // Calls each(atom) for partners of both, which come after `after`. The one with fewer partners is looked through: the

@@ -201,20 +201,18 @@ private:
             for (const std::int32_t a : rows)
                 for (const std::int32_t b : rows)
                     if (a != b) neighbours[at(a)].push_back(b);
-        const auto sort_each = [](std::vector<std::vector<std::int32_t>> &lists) {
-            for (auto &list : lists) {
-                std::sort(list.begin(), list.end());
-                list.erase(std::unique(list.begin(), list.end()), list.end());
-            }
-        };
-        sort_each(neighbours);
+        for (auto &list : neighbours) {
+            std::sort(list.begin(), list.end());
+            list.erase(std::unique(list.begin(), list.end()), list.end());
+        }
         const std::vector<std::int32_t> order = minimum_degree(neighbours);
         std::vector<std::int32_t> number(order.size());
         for (std::size_t k = 0; k < order.size(); ++k) number[at(order[k])] = static_cast<std::int32_t>(k);
-        std::vector<std::vector<std::int32_t>> ordered(order.size());
-        for (std::size_t k = 0; k < order.size(); ++k)
-            for (const std::int32_t other : neighbours[at(order[k])]) ordered[k].push_back(number[at(other)]);
-        sort_each(ordered);
+        Lists ordered{{0}, {}};
+        for (const std::int32_t row : order) {
+            for (const std::int32_t other : neighbours[at(row)]) ordered.item.push_back(number[at(other)]);
+            ordered.start.push_back(static_cast<std::int32_t>(ordered.item.size()));
+        }
         const Fill fill = fill_of(ordered);
         s_.column_start = fill.column_start;
         s_.row = fill.row;

@@ -45,7 +45,6 @@ public:
     }
 
 private:
-    static std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
     const Ties ties_;
     Rows first_, last_, next_, before_, degree_;
     std::size_t least_ = 0;
@@ -81,34 +80,78 @@ std::vector<std::int32_t> minimum_degree(std::vector<Rows> neighbours, Ties ties
     return order;
 }
 
-Fill fill_of(const std::vector<Rows> &neighbours) {
-    const std::size_t n = neighbours.size();
+Lists neighbours_of(const Lists &meeting, std::int32_t n) {
+    const std::int32_t n_lists = static_cast<std::int32_t>(meeting.start.size()) - 1;
+    Lists found;
+    found.start.assign(at(n) + 1, 0);
+    for (std::int32_t i = 0; i < n_lists; ++i)
+        for (const std::int32_t *p = meeting.begin(i); p != meeting.end(i); ++p)
+            found.start[at(*p)] += meeting.size(i) - 1;
+    for (std::int32_t k = 0, first = 0; k < n; ++k) {
+        first += found.start[at(k)];
+        found.start[at(k)] = first;  // where it ends
+    }
+    found.start[at(n)] = n > 0 ? found.start[at(n) - 1] : 0;
+    found.item.resize(at(found.start[at(n)]));
+    for (std::int32_t i = n_lists; i-- > 0;)
+        for (const std::int32_t *p = meeting.end(i); p-- != meeting.begin(i);)
+            for (const std::int32_t *q = meeting.end(i); q-- != meeting.begin(i);)
+                if (p != q) found.item[at(--found.start[at(*p)])] = *q;
+    return found;
+}
+
+namespace {
+
+void check_rows(std::size_t n) {
+    if (n > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
+        throw std::length_error("the elimination of a molecule fills its matrix");
+}
+
+}  // namespace
+
+Fill fill_of(const Lists &neighbours) {
+    const std::int32_t n = static_cast<std::int32_t>(neighbours.start.size()) - 1;
     Fill fill;
-    fill.column_start.assign(n + 1, 0);
-    // A column has the rows of the matrix and those of the columns whose first row it is.
-    std::vector<Rows> children(n);
-    Rows seen(n, -1), column;
-    for (std::size_t k = 0; k < n; ++k) {
-        const std::int32_t self = static_cast<std::int32_t>(k);
+    fill.column_start.assign(at(n) + 1, 0);
+    // A column has the rows of the matrix and those of the columns whose first row it is, its children.
+    Rows seen(at(n), -1), column, child(at(n), -1), next_child(at(n), -1);
+    for (std::int32_t k = 0; k < n; ++k) {
         column.clear();
-        const auto take = [&](std::int32_t i) {
-            if (i <= self || seen[static_cast<std::size_t>(i)] == self) return;
-            seen[static_cast<std::size_t>(i)] = self;
-            column.push_back(i);
+        const auto take = [&](const std::int32_t *i, const std::int32_t *end) {
+            for (; i != end; ++i) {
+                if (*i <= k || seen[at(*i)] == k) continue;
+                seen[at(*i)] = k;
+                column.push_back(*i);
+            }
         };
-        for (const std::int32_t i : neighbours[k]) take(i);
-        for (const std::int32_t c : children[k])
-            for (std::int32_t e = fill.column_start[static_cast<std::size_t>(c)];
-                 e < fill.column_start[static_cast<std::size_t>(c) + 1]; ++e)
-                take(fill.row[static_cast<std::size_t>(e)]);
+        take(neighbours.begin(k), neighbours.end(k));
+        for (std::int32_t c = child[at(k)]; c >= 0; c = next_child[at(c)])
+            take(fill.row.data() + fill.column_start[at(c)], fill.row.data() + fill.column_start[at(c) + 1]);
         std::sort(column.begin(), column.end());
-        if (fill.row.size() + column.size() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
-            throw std::length_error("the elimination of a molecule fills its matrix");
+        check_rows(fill.row.size() + column.size());
         fill.row.insert(fill.row.end(), column.begin(), column.end());
-        fill.column_start[k + 1] = static_cast<std::int32_t>(fill.row.size());
-        if (!column.empty()) children[static_cast<std::size_t>(column[0])].push_back(self);
+        fill.column_start[at(k) + 1] = static_cast<std::int32_t>(fill.row.size());
+        if (column.empty()) continue;
+        next_child[at(k)] = child[at(column[0])];
+        child[at(column[0])] = k;
     }
     return fill;
+}
+
+Fill in_order(const Fill &fill, const Numbers &order) {
+    Fill made;
+    made.column_start.assign(1, 0);
+    made.column_start.reserve(order.size() + 1);
+    made.row.reserve(fill.row.size());
+    Numbers number(order.size());
+    for (std::size_t p = 0; p < order.size(); ++p) number[at(order[p])] = static_cast<std::int32_t>(p);
+    for (const std::int32_t k : order) {
+        for (std::int32_t e = fill.column_start[at(k)]; e < fill.column_start[at(k) + 1]; ++e)
+            made.row.push_back(number[at(fill.row[at(e)])]);
+        std::sort(made.row.begin() + made.column_start.back(), made.row.end());
+        made.column_start.push_back(static_cast<std::int32_t>(made.row.size()));
+    }
+    return made;
 }
 
 }  // namespace holonomic

@@ -6,6 +6,8 @@
 #include <new>
 #include <vector>
 
+#include "core/molecules/given/lists.hpp"
+
 namespace holonomic {
 
 // Thrown before memory is taken that is more than may be.
@@ -28,11 +30,18 @@ enum class Ties { latest, first };
 std::vector<std::int32_t> minimum_degree(std::vector<std::vector<std::int32_t>> neighbours, Ties ties = Ties::latest,
                                          std::int64_t most_bytes = no_limit);
 
+// Of each of n rows the others that it meets somewhere, as often as they meet, where meeting.begin(i) .. end(i) are
+// those that meet at i.
+Lists neighbours_of(const Lists &meeting, std::int32_t n);
+
 // The pattern of the factor below its diagonal for rows in the order of elimination, column by column, rows ascending.
 // `neighbours` in the same numbers.
 struct Fill {
     std::vector<std::int32_t> column_start, row;
 };
-Fill fill_of(const std::vector<std::vector<std::int32_t>> &neighbours);
+Fill fill_of(const Lists &neighbours);
+
+// The same in another order that fills as much: its columns by their numbers here.
+Fill in_order(const Fill &fill, const Numbers &order);
 
 }  // namespace holonomic

@@ -25,8 +25,10 @@ void EliminationPlanner::make() {
     list_children();
     m_.column_start.assign(1, 0);
     if (s_.n_core == 0) return;
-    list_meetings();
-    if (!is_network_) list_fill();
+    Lists meeting = meetings();
+    if (!is_network_) list_fill(meeting);
+    m_.meet_start = std::move(meeting.start);
+    m_.meet = std::move(meeting.item);
 }
 
 // Takes away atoms with one bond until none is left: upper_bond_ of those. Of a tree the last two atoms would take
@@ -217,21 +219,14 @@ void EliminationPlanner::list_children() {
 }
 
 // Which bonds meet at each atom of the core.
-void EliminationPlanner::list_meetings() {
-    Lists meet = invert(s_.n_core_atoms, s_.n_core,
-                        [&](std::int32_t p, int end) { return (end ? m_.to : m_.from)[at(p)] - s_.n_tree; });
-    m_.meet_start = std::move(meet.start);
-    m_.meet = std::move(meet.item);
+Lists EliminationPlanner::meetings() const {
+    return invert(s_.n_core_atoms, s_.n_core,
+                  [&](std::int32_t p, int end) { return (end ? m_.to : m_.from)[at(p)] - s_.n_tree; });
 }
 
 // The factor's pattern.
-void EliminationPlanner::list_fill() {
-    std::vector<Numbers> neighbours(at(s_.n_core));
-    for (std::int32_t c = 0; c < s_.n_core_atoms; ++c)
-        for (std::int32_t a = m_.meet_start[at(c)]; a < m_.meet_start[at(c) + 1]; ++a)
-            for (std::int32_t b = m_.meet_start[at(c)]; b < m_.meet_start[at(c) + 1]; ++b)
-                if (a != b) neighbours[at(m_.meet[at(a)])].push_back(m_.meet[at(b)]);
-    Fill fill = fill_of(neighbours);
+void EliminationPlanner::list_fill(const Lists &meeting) {
+    Fill fill = fill_of(neighbours_of(meeting, s_.n_core));
     m_.column_start = std::move(fill.column_start);
     m_.row = std::move(fill.row);
 }

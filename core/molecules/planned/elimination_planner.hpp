@@ -38,8 +38,8 @@ private:
     void check_atoms(const Numbers &core, std::int64_t most_bytes) const;
     void invert_numbers();
     void list_children();
-    void list_meetings();
-    void list_fill();
+    Lists meetings() const;
+    void list_fill(const Lists &meeting);
 
     EliminationPlan &s_;
     EliminationWork &m_;

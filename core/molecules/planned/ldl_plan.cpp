@@ -27,9 +27,10 @@ public:
     void make() {
         const Numbers order = bonds_from_the_leaves(s_);
         a_.bond_of = order;
-        const ListOrder made = order_of_list(fill_of(neighbours()));
+        const Fill leaves_first = fill_of(neighbours_of(bonds_of_atoms(), s_.n_bonds));
+        const ListOrder made = order_of_list(leaves_first);
         for (std::int32_t p = 0; p < s_.n_bonds; ++p) a_.bond_of[at(p)] = order[at(made.column[at(p)])];
-        Fill fill = fill_of(neighbours());
+        Fill fill = in_order(leaves_first, made.column);
         start_ = std::move(fill.column_start);
         row_ = std::move(fill.row);
         bonds_ = bonds_of_atoms();
@@ -51,15 +52,6 @@ private:
     std::int32_t end_of(std::int32_t p, int end) const {
         const std::int32_t k = a_.bond_of[at(p)];
         return (end ? s_.atom_j : s_.atom_i)[k];
-    }
-    Rows neighbours() const {
-        const Lists bonds = bonds_of_atoms();
-        Rows list(at(s_.n_bonds));
-        for (std::int32_t i = 0; i < s_.n_atoms; ++i)
-            for (const std::int32_t *p = bonds.begin(i); p != bonds.end(i); ++p)
-                for (const std::int32_t *q = bonds.begin(i); q != p; ++q)
-                    list[at(*p)].push_back(*q), list[at(*q)].push_back(*p);
-        return list;
     }
     // Where an entry is.
     std::int32_t entry(std::int32_t row, std::int32_t column) const {
