@@ -1,10 +1,11 @@
 #include "Constraints.h"
 
 #include <algorithm>
-#include <map>
+#include <cstdlib>
+#include <functional>
 #include <string>
 
-#include "Source.h"
+#include "Arrays.h"
 #include "openmm/OpenMMException.h"
 #include "openmm/common/ContextSelector.h"
 #include "openmm/common/IntegrationUtilities.h"
@@ -13,39 +14,22 @@ using namespace OpenMM;
 
 namespace {
 
-// Beyond so many entries of a molecule's matrix (a tree of some 150 bonds) the host is the better place.
-constexpr std::size_t maxEntries = 300;
-constexpr std::size_t mostBondsOfSmall = 6;
+// Molecules with more entries are solved by a block of threads: on a GPU the registers of one hold no more than a tree
+// of some 32 bonds, and molecules are too few to fill it otherwise; a processor has no such limits, but its compiler
+// takes a minute for larger ones than a tree of some 150.
+std::size_t maxEntriesOfThread(const ComputeContext &device) {
+    const char *const asked = std::getenv("HOLONOMIC_OPENMM_ENTRIES");
+    if (asked) return std::strtoul(asked, nullptr, 10);
+    return device.getIsCPU() ? 300 : 80;
+}
+
+constexpr std::size_t mostAtomsNamed = 20;
 
 struct ReorderedAtoms : ComputeContext::ReorderListener {
     explicit ReorderedAtoms(std::function<void()> what) : tell(std::move(what)) {}
     void execute() override { tell(); }
     std::function<void()> tell;
 };
-
-// Arrays of four numbers for each atom, floats or doubles.
-template <class Number>
-std::vector<double> downloaded(const ArrayInterface &array) {
-    std::vector<Number> numbers(4 * static_cast<std::size_t>(array.getSize()));
-    array.download(numbers.data(), true);
-    return std::vector<double>(numbers.begin(), numbers.end());
-}
-
-template <class Number>
-void uploaded(ArrayInterface &array, const std::vector<double> &values) {
-    const std::vector<Number> numbers(values.begin(), values.end());
-    array.upload(numbers.data(), true);
-}
-
-bool ofDoubles(const ArrayInterface &array) { return array.getElementSize() == 4 * sizeof(double); }
-
-std::vector<double> read(const ArrayInterface &array) {
-    return ofDoubles(array) ? downloaded<double>(array) : downloaded<float>(array);
-}
-
-void write(ArrayInterface &array, const std::vector<double> &values) {
-    ofDoubles(array) ? uploaded<double>(array, values) : uploaded<float>(array, values);
-}
 
 std::vector<int> atomsOf(const hol_chains *chains, std::int64_t molecule) {
     std::int64_t n;
@@ -75,7 +59,9 @@ std::vector<double> inverseMassesOf(const System &system) {
 
 DeviceConstraints::DeviceConstraints(ComputeContext &device, const System &system, int nThreads)
     : context(device), host(system, nThreads), inverseMasses(inverseMassesOf(system)) {
-    takeMolecules(system, sortedByKind(host.chains(), maxEntries));
+    const std::vector<MoleculesOfKind> sorted = sortedByKind(host.chains(), maxEntriesOfThread(device));
+    findMolecules(sorted);
+    launches = std::make_unique<Launches>(device, sorted, inverseMasses);
     findAtoms();
     // Molecules of one kind may change places, as a whole: what stands in the arrays above stays true, and what was
     // told of atoms by their places must be told before.
@@ -85,137 +71,51 @@ DeviceConstraints::DeviceConstraints(ComputeContext &device, const System &syste
     }));
 }
 
+void DeviceConstraints::findMolecules(const std::vector<MoleculesOfKind> &onDevice) {
+    moleculeOf.assign(inverseMasses.size(), -1);
+    std::vector<bool> isThere(hol_chains_n_molecules(host.chains()), false);
+    for (const MoleculesOfKind &some : onDevice)
+        for (const Molecule &molecule : some.molecules) {
+            isThere[molecule.number] = true;
+            for (int atom : molecule.atoms) moleculeOf[atom] = molecule.number;
+        }
+    for (std::size_t number = 0; number < isThere.size(); ++number)
+        if (!isThere[number]) left.push_back(static_cast<std::int64_t>(number));
+}
+
 void DeviceConstraints::findAtoms() {
     atomOf.assign(context.getAtomIndex().begin(), context.getAtomIndex().begin() + context.getNumAtoms());
-}
-
-void DeviceConstraints::takeMolecules(const System &system, const std::vector<MoleculesOfKind> &sorted) {
-    std::vector<mm_int2> groupData;
-    std::vector<int> atomData;
-    std::vector<double> parameterData;
-    std::map<std::vector<double>, int> known;  // where molecules that are alike have their parameters
-    moleculeOf.assign(system.getNumParticles(), -1);
-    std::vector<bool> isOnDevice(hol_chains_n_molecules(host.chains()), false);
-    for (std::size_t kind = 0; kind < sorted.size(); ++kind) {
-        const int rows = sorted[kind].kind.nAtoms + 1;
-        const auto &molecules = sorted[kind].molecules;
-        for (std::size_t first = 0; first < molecules.size(); first += groupWidth) {
-            groupData.push_back(mm_int2(static_cast<int>(kind), static_cast<int>(atomData.size())));
-            atomData.resize(atomData.size() + rows * groupWidth, -1);
-            beginnings.resize(beginnings.size() + groupWidth, -1);
-            int *const data = &atomData[groupData.back().y];
-            for (int lane = 0; lane < groupWidth && first + lane < molecules.size(); ++lane) {
-                const Molecule &molecule = molecules[first + lane];
-                std::vector<double> values;
-                for (int atom : molecule.atoms) values.push_back(1 / system.getParticleMass(atom));
-                for (double length : molecule.lengths) values.push_back(1 / (length * length));
-                const auto place = known.emplace(values, static_cast<int>(parameterData.size()));
-                if (place.second) parameterData.insert(parameterData.end(), values.begin(), values.end());
-                for (int row = 0; row + 1 < rows; ++row) data[row * groupWidth + lane] = molecule.atoms[row];
-                data[(rows - 1) * groupWidth + lane] = place.first->second;
-                for (int atom : molecule.atoms) moleculeOf[atom] = molecule.number;
-                beginnings[beginnings.size() - groupWidth + lane] = molecule.atoms[0];
-                isOnDevice[molecule.number] = true;
-            }
-        }
-    }
-    for (std::size_t number = 0; number < isOnDevice.size(); ++number)
-        if (!isOnDevice[number]) left.push_back(static_cast<std::int64_t>(number));
-    if (beginnings.empty()) return;
-    allocate(groupData, atomData, parameterData);
-    // A kernel takes the registers of its largest molecule, so that the small ones, water above all, have one of their
-    // own.
-    const std::size_t nLarge = std::count_if(sorted.begin(), sorted.end(), [](const MoleculesOfKind &one) {
-        return one.kind.bonds.size() > mostBondsOfSmall;
-    });
-    addLaunch(sorted, 0, nLarge, 0);
-    addLaunch(sorted, nLarge, sorted.size(), launches.empty() ? 0 : launches.back().lastSlot);
-}
-
-void DeviceConstraints::allocate(const std::vector<mm_int2> &groupData, const std::vector<int> &atomData,
-                                 const std::vector<double> &parameterData) {
-    const bool doubles = context.getUseDoublePrecision() || context.getUseMixedPrecision();
-    groups.initialize<mm_int2>(context, static_cast<int>(groupData.size()), "holonomicGroups");
-    groups.upload(groupData);
-    atoms.initialize<int>(context, static_cast<int>(atomData.size()), "holonomicAtoms");
-    atoms.upload(atomData);
-    parameters.initialize(context, static_cast<int>(parameterData.size()), doubles ? sizeof(double) : sizeof(float),
-                          "holonomicParameters");
-    parameters.upload(parameterData, true);
-    failures.initialize<int>(context, static_cast<int>(beginnings.size()), "holonomicFailures");
-    anyFailure.initialize<int>(context, 1, "holonomicAnyFailure");
-    context.clearBuffer(failures);
-    context.clearBuffer(anyFailure);
-}
-
-void DeviceConstraints::addLaunch(const std::vector<MoleculesOfKind> &sorted, std::size_t first, std::size_t last,
-                                  int firstSlot) {
-    if (first == last) return;
-    int lastSlot = firstSlot;
-    for (std::size_t kind = first; kind < last; ++kind)
-        lastSlot += static_cast<int>((sorted[kind].molecules.size() + groupWidth - 1) / groupWidth * groupWidth);
-    const ComputeProgram program = context.compileProgram(kernelSource(sorted, first, last));
-    launches.push_back(
-        {program->createKernel("solvePositions"), program->createKernel("solveVelocities"), firstSlot, lastSlot});
-    for (bool velocities : {false, true}) {
-        const ComputeKernel &kernel = launches.back().kernel(velocities);
-        kernel->addArg(firstSlot);
-        kernel->addArg(lastSlot);
-        for (ComputeArray *array : {&groups, &atoms, &parameters, &failures, &anyFailure}) kernel->addArg(*array);
-        kernel->addArg(1);
-        kernel->addArg(velocities ? context.getVelm() : context.getIntegrationUtilities().getPosDelta());
-        kernel->addArg(context.getPosq());
-        if (context.getUseMixedPrecision()) kernel->addArg(context.getPosqCorrection());
-    }
 }
 
 void DeviceConstraints::apply(bool toVelocities) {
     ContextSelector selector(context);
     if (outsideOfSteps) check();  // a failure of the last steps is none of this call's
     firstStep = std::min(firstStep, context.getStepCount());
-    for (const Launch &launch : launches) {
-        const ComputeKernel &kernel = launch.kernel(toVelocities);
-        kernel->setArg(7, static_cast<int>(context.getStepCount() - firstStep) + 1);
-        kernel->execute(launch.lastSlot - launch.firstSlot, groupWidth);
-    }
-    if (outsideOfSteps && !launches.empty()) {
+    launches->execute(toVelocities, static_cast<int>(context.getStepCount() - firstStep) + 1);
+    if (outsideOfSteps) {
         int call;
         std::vector<std::int64_t> which;
-        for (int slot : failedSlots(call)) which.push_back(moleculeIn(slot));
+        for (int slot : launches->failedSlots(call)) which.push_back(moleculeIn(slot));
         if (!which.empty()) solveOnHost(toVelocities, which);
     }
     if (!left.empty()) solveOnHost(toVelocities, left);
 }
 
-std::int64_t DeviceConstraints::moleculeIn(int slot) const { return moleculeOf[atomOf[beginnings[slot]]]; }
-
-std::vector<int> DeviceConstraints::failedSlots(int &firstCall) {
-    std::vector<int> any(1), calls;
-    anyFailure.download(any);
-    if (any[0] == 0) return {};
-    failures.download(calls);
-    context.clearBuffer(failures);
-    context.clearBuffer(anyFailure);
-    firstCall = 0;
-    for (int call : calls)
-        if (call != 0 && (firstCall == 0 || call < firstCall)) firstCall = call;
-    std::vector<int> slots;
-    for (std::size_t slot = 0; slot < calls.size(); ++slot)
-        if (calls[slot] == firstCall) slots.push_back(static_cast<int>(slot));
-    return slots;
-}
+std::int64_t DeviceConstraints::moleculeIn(int slot) const { return moleculeOf[atomOf[launches->firstAtom(slot)]]; }
 
 void DeviceConstraints::check() {
-    if (launches.empty()) return;
+    if (launches->empty()) return;
     ContextSelector selector(context);
     const long long since = firstStep;
     firstStep = context.getStepCount();
     int call;
-    const std::vector<int> failed = failedSlots(call);
+    const std::vector<int> failed = launches->failedSlots(call);
     if (failed.empty()) return;
+    const std::vector<int> atoms = atomsOf(host.chains(), moleculeIn(failed[0]));
     std::string words;
-    for (int atom : atomsOf(host.chains(), moleculeIn(failed[0])))
-        words += (words.empty() ? " " : ", ") + std::to_string(atom);
+    for (std::size_t k = 0; k < std::min(atoms.size(), mostAtomsNamed); ++k)
+        words += (k == 0 ? " " : ", ") + std::to_string(atoms[k]);
+    if (atoms.size() > mostAtomsNamed) words += " and " + std::to_string(atoms.size() - mostAtomsNamed) + " more";
     throw OpenMMException(
         "holonomic: the constraints of the molecule of atoms" + words + " could not be solved in step " +
         std::to_string(since + call) + ": the step is too long, or a coordinate is not finite" +

@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
-#include <set>
 #include <tuple>
 
+#include "Elimination.h"
 #include "Kinds.h"
 
 namespace OpenMM {
@@ -44,65 +44,9 @@ std::vector<int> outwards(int nAtoms, const Pairs &bonds) {
     return order;
 }
 
-std::vector<std::set<int>> bondsThatShareAtoms(int nAtoms, const Pairs &bonds) {
-    std::vector<std::vector<int>> at(nAtoms);
-    std::vector<std::set<int>> near(bonds.size());
-    for (int k = 0; k < static_cast<int>(bonds.size()); ++k)
-        for (int atom : {bonds[k].first, bonds[k].second}) {
-            for (int other : at[atom]) {
-                near[k].insert(other);
-                near[other].insert(k);
-            }
-            at[atom].push_back(k);
-        }
-    return near;
-}
-
-// How many pairs of a bond's neighbours get an entry when it is eliminated.
-int filled(const std::vector<std::set<int>> &near, int bond) {
-    int n = 0;
-    for (int one : near[bond])
-        for (int other : near[bond]) n += one < other && !near[one].count(other);
-    return n;
-}
-
-// Puts the bonds of a Kind into the order of least fill, which is none where there is no cycle, and notes the entries.
-// Gives the place of each bond in that order; empty where there are more than maxEntries entries.
-std::vector<int> eliminate(Kind &kind, std::size_t maxEntries) {
-    auto near = bondsThatShareAtoms(kind.nAtoms, kind.bonds);
-    const int n = static_cast<int>(near.size());
-    std::vector<int> place(n, -1);
-    Pairs ordered, entries;
-    for (int step = 0; step < n; ++step) {
-        int next = -1, least = 0;
-        for (int k = 0; k < n; ++k) {
-            if (place[k] >= 0) continue;
-            const int fill = filled(near, k);
-            if (next < 0 || fill < least) {
-                next = k;
-                least = fill;
-            }
-        }
-        place[next] = step;
-        ordered.push_back(kind.bonds[next]);
-        for (int k : near[next]) {
-            entries.emplace_back(next, k);
-            near[k].erase(next);
-            for (int other : near[next])
-                if (other != k) near[k].insert(other);
-        }
-        if (entries.size() > maxEntries) return {};
-    }
-    for (auto &entry : entries) entry = {place[entry.first], place[entry.second]};
-    std::sort(entries.begin(), entries.end());
-    kind.bonds = ordered;
-    kind.entries = entries;
-    return place;
-}
-
 }  // namespace
 
-std::vector<MoleculesOfKind> sortedByKind(const hol_chains *chains, std::size_t maxEntries) {
+std::vector<MoleculesOfKind> sortedByKind(const hol_chains *chains, std::size_t maxEntriesOfThread) {
     std::vector<std::int64_t> pairs(2 * hol_chains_n_bonds(chains));
     std::vector<double> lengths(hol_chains_n_bonds(chains));
     hol_chains_pairs(chains, pairs.data());
@@ -113,7 +57,7 @@ std::vector<MoleculesOfKind> sortedByKind(const hol_chains *chains, std::size_t 
         int shape;
         std::int64_t nAtoms, nBonds;
         hol_chains_molecule(chains, number, &shape, &nAtoms, &nBonds);
-        if (shape == HOL_SHAPE_RIGID || static_cast<std::size_t>(nBonds) > maxEntries) continue;
+        if (shape == HOL_SHAPE_RIGID) continue;
         std::vector<std::int64_t> bonds(nBonds);
         hol_chains_bonds(chains, number, bonds.data());
         std::vector<int> atoms;
@@ -134,11 +78,12 @@ std::vector<MoleculesOfKind> sortedByKind(const hol_chains *chains, std::size_t 
         for (std::size_t k = 0; k < ends.size(); ++k)
             named.emplace_back(std::minmax(renamed[ends[k].first], renamed[ends[k].second]), bonds[k]);
         std::sort(named.begin(), named.end());
-        Kind kind{static_cast<int>(atoms.size()), {}, {}};
+        Kind kind{static_cast<int>(atoms.size()), {}, {}, {}};
         for (const auto &bond : named) kind.bonds.push_back(bond.first);
         if (!eliminated.count(kind)) {
             Kind inOrder = kind;
-            std::vector<int> placed = eliminate(inOrder, maxEntries);
+            std::vector<int> placed = eliminateOneByOne(inOrder, maxEntriesOfThread);
+            if (placed.empty()) placed = eliminateByLevels(inOrder);
             eliminated.emplace(kind, std::make_pair(std::move(inOrder), std::move(placed)));
         }
         const std::vector<int> &place = eliminated.at(kind).second;
@@ -151,6 +96,7 @@ std::vector<MoleculesOfKind> sortedByKind(const hol_chains *chains, std::size_t 
     std::vector<MoleculesOfKind> sorted;
     for (auto &one : found) sorted.push_back({one.first, std::move(one.second)});
     std::stable_sort(sorted.begin(), sorted.end(), [](const MoleculesOfKind &a, const MoleculesOfKind &b) {
+        if (a.kind.isForBlock() != b.kind.isForBlock()) return b.kind.isForBlock();
         return a.kind.bonds.size() > b.kind.bonds.size();
     });
     return sorted;

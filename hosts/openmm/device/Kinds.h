@@ -18,7 +18,11 @@ struct Kind {
     // Pairs of bonds, first < second, whose entry in the matrix of the multipliers is not 0: those that share an atom,
     // and what the elimination fills.
     std::vector<std::pair<int, int>> entries;
+    // Of what a block of threads solves: where each level of bonds begins that have no entries with each other, and
+    // where the last one ends. Empty: for one thread.
+    std::vector<int> levels;
 
+    bool isForBlock() const { return !levels.empty(); }
     bool operator<(const Kind &other) const { return std::tie(nAtoms, bonds) < std::tie(other.nAtoms, other.bonds); }
 };
 
@@ -33,9 +37,10 @@ struct MoleculesOfKind {
     std::vector<Molecule> molecules;
 };
 
-// The molecules of chains that a work-item of a device can solve alone, the largest kinds first. Left out are rigid
-// bodies, which the library alone recognises, and what would take more than maxEntries entries.
-std::vector<MoleculesOfKind> sortedByKind(const hol_chains *chains, std::size_t maxEntries);
+// The molecules of chains that a device can solve: the kinds for one thread, then those with more than
+// maxEntriesOfThread entries, which are for a block of threads; the largest of each first. Left out are rigid bodies,
+// which the library alone recognises, and what eliminateByLevels leaves out.
+std::vector<MoleculesOfKind> sortedByKind(const hol_chains *chains, std::size_t maxEntriesOfThread);
 
 }  // namespace OpenMM
 

@@ -5,11 +5,9 @@
 
 namespace OpenMM {
 
-namespace {
-
 // What is the same for all kinds. In mixed precision positions are the sum of two floats; residuals and displacements
 // are in doubles, the matrix and its factors, to which iterations are indifferent, in floats.
-const char common[] = R"(
+const char commonSource[] = R"(
 #ifdef USE_MIXED_PRECISION
 #define POSITIONS GLOBAL const real4* RESTRICT posq, GLOBAL const real4* RESTRICT posqCorrection
 #define THE_POSITIONS posq, posqCorrection
@@ -28,6 +26,8 @@ const char common[] = R"(
 #define ROUNDED(v) make_real3((v).x, (v).y, (v).z)
 #define MAX_ITERATIONS 25
 )";
+
+namespace {
 
 // A loop over groups: the platform may start fewer threads than were asked for. `failures` keeps for each molecule the
 // call that it failed in first, from 1 on; nothing depends on which thread comes first.
@@ -228,7 +228,7 @@ std::string kernel(const char *name, std::size_t first, std::size_t last) {
 }  // namespace
 
 std::string kernelSource(const std::vector<MoleculesOfKind> &kinds, std::size_t first, std::size_t last) {
-    std::string text = common + std::string("#define WIDTH ") + std::to_string(groupWidth) + "\n";
+    std::string text = commonSource + std::string("#define WIDTH ") + std::to_string(groupWidth) + "\n";
     for (std::size_t k = first; k < last; ++k)
         text += Writer(kinds[k].kind).positions(static_cast<int>(k)) +
                 Writer(kinds[k].kind).velocities(static_cast<int>(k));

@@ -19,6 +19,19 @@ constexpr int groupWidth = 64;
 // The kernels are for the kinds from number first to number last - 1.
 std::string kernelSource(const std::vector<MoleculesOfKind> &kinds, std::size_t first, std::size_t last);
 
+// Room for a molecule in local memory; none: it stands in arrays for all of them.
+struct LocalScratch {
+    int nMixed, nReals;
+};
+
+// The kernel solvePositions or solveVelocities for molecules that blocks of blockSize threads solve, of any kind, by
+// its plan. Data that it reads, instead of the groups: for each slot from firstBlock on where its plan, its atoms
+// (followed by where its parameters begin), and its room in the arrays of scratch begin.
+std::string blockSource(bool ofVelocities, int blockSize, int firstBlock, const LocalScratch &scratch);
+
+// What all kernels begin with.
+extern const char commonSource[];
+
 }  // namespace OpenMM
 
 #endif
