@@ -107,6 +107,21 @@ def lipid(rng):
     return molecule
 
 
+def protein(rng):
+    """200 residues with side chains of four carbons and all hydrogens: 3801 atoms."""
+    molecule = Molecule(rng)
+    last = molecule.add(1.008)
+    for _ in range(200):
+        nitrogen = molecule.add(14.007, last, 0.134 if last else 0.101)
+        molecule.filled(nitrogen, 1)
+        alpha = molecule.add(12.011, nitrogen, 0.145)
+        last = molecule.add(12.011, alpha, 0.152)
+        molecule.tail(alpha, 4)
+        molecule.filled(alpha, 1)
+        molecule.add(15.999, last, 0.123)
+    return molecule
+
+
 def many(make, copies):
     """Copies of one molecule, turned and moved at random. All have its lengths, to the last bit: OpenMM asks for that in water."""
     rng = np.random.default_rng(1)
@@ -159,6 +174,8 @@ SCENES = {
     "peptide-allbonds": lambda: peptide_in_water(app.AllBonds),
     "dodecane": lambda: many(grown(dodecane), 216),
     "lipid": lambda: many(grown(lipid), 128),
+    "protein": lambda: many(grown(protein), 1),
+    "proteins": lambda: many(grown(protein), 4),
     "cholesterol": lambda: many(cholesterol, 2000),
 }
 

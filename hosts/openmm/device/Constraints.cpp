@@ -20,7 +20,7 @@ namespace {
 std::size_t maxEntriesOfThread(const ComputeContext &device) {
     const char *const asked = std::getenv("HOLONOMIC_OPENMM_ENTRIES");
     if (asked) return std::strtoul(asked, nullptr, 10);
-    return device.getIsCPU() ? 300 : 80;
+    return device.getIsCPU() ? 300 : 70;
 }
 
 constexpr std::size_t mostAtomsNamed = 20;
