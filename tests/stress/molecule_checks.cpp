@@ -55,19 +55,31 @@ void check_multipliers(const hostile_molecule &m, const molecule_solution &s, co
         out.compare(q, lambda[b], s.lambda[b], k * s.lambda_scale[b] + (s.lambda_scale[b] > 0 ? tail : 0));
 }
 
-void check_forces(const hostile_molecule &m, const molecule_reference &exact, const molecule_results &alone,
-                  molecule_verdict &out)
+void check_pulls(const hostile_molecule &m, const molecule_solution &s, const numbers &g, molecule_quantity q,
+                 molecule_verdict &out)
 {
-    if (alone.solve == HOL_OK && exact.solve.there) check_multipliers(m, exact.solve.s, alone.solved, M_SOLVE, out);
-    if (alone.forces != HOL_OK || !exact.forces.there) return;
-    const molecule_solution &s = exact.forces.s;
-    check_multipliers(m, s, alone.lambda, M_LAMBDA, out);
     const long double k = linear_eps(m),
                       pull = 2 * margin(m, s, k) * *std::max_element(m.length.begin(), m.length.end());
     for (std::size_t i = 0; i < m.r.size(); ++i)
-        if (s.g_scale[i / 3] > 0 || !is_blank(alone.g[i]))  // atoms without a constraint are not written
-            out.compare(M_FORCE, alone.g[i], s.g[i], k * s.g_scale[i / 3] + (s.g_scale[i / 3] > 0 ? pull : 0));
-    for (std::size_t i = 0; i < 9; ++i) out.compare(M_VIRIAL, alone.virial[i], s.virial[i], k * s.virial_scale);
+        if (s.g_scale[i / 3] > 0 || !is_blank(g[i]))  // atoms without a constraint are not written
+            out.compare(q, g[i], s.g[i], k * s.g_scale[i / 3] + (s.g_scale[i / 3] > 0 ? pull : 0));
+}
+
+void check_forces(const hostile_molecule &m, const molecule_reference &exact, const molecule_results &alone,
+                  molecule_verdict &out)
+{
+    const bool kept = alone.kept == HOL_OK;
+    if (alone.solve == HOL_OK && exact.solve.there) check_multipliers(m, exact.solve.s, alone.solved, M_SOLVE, out);
+    if (kept && exact.solve.there) check_multipliers(m, exact.solve.s, alone.kept_solved, M_KEPT_SOLVE, out);
+    if (alone.forces != HOL_OK || !exact.forces.there) return;
+    const molecule_solution &s = exact.forces.s;
+    check_multipliers(m, s, alone.lambda, M_LAMBDA, out);
+    check_pulls(m, s, alone.g, M_FORCE, out);
+    for (std::size_t i = 0; i < 9; ++i)
+        out.compare(M_VIRIAL, alone.virial[i], s.virial[i], linear_eps(m) * s.virial_scale);
+    if (!kept) return;
+    check_multipliers(m, s, alone.kept_lambda, M_KEPT, out);
+    check_pulls(m, s, alone.kept_g, M_KEPT_FORCE, out);
 }
 
 void check_velocities(const hostile_molecule &m, const molecule_reference &exact, const molecule_results &alone,
@@ -232,12 +244,13 @@ bool finite_or_blank(const numbers &x)
  */
 void check_outputs(const hostile_molecule &m, const molecule_results &part, molecule_verdict &out)
 {
-    for (const numbers *x :
-         {&part.lambda, &part.solved, &part.mu, &part.position_lambda, &part.log_det, &part.g, &part.fixman})
+    for (const numbers *x : {&part.lambda, &part.solved, &part.mu, &part.position_lambda, &part.log_det, &part.g,
+                             &part.fixman, &part.kept_lambda, &part.kept_solved, &part.kept_g})
         out.note(M_OUTPUTS, !finite_or_blank(*x));
     for (const numbers *x : {&part.v, &part.r, &part.moved}) out.note(M_OUTPUTS, !all_finite(*x));
     if (part.forces == HOL_OK) out.note(M_OUTPUTS, !all_finite(part.lambda));
     if (part.solve == HOL_OK) out.note(M_OUTPUTS, !all_finite(part.solved));
+    if (part.kept == HOL_OK) out.note(M_OUTPUTS, !all_finite(part.kept_lambda) || !all_finite(part.kept_solved));
     if (part.velocities == HOL_OK) out.note(M_OUTPUTS, !all_finite(part.mu));
     if (part.positions == HOL_OK) out.note(M_OUTPUTS, !all_finite(part.position_lambda));
     const auto kept = [](const numbers &multipliers, const numbers &is, const numbers &was) {
@@ -308,7 +321,7 @@ molecule_verdict check_alone(const hostile_molecule &m, const molecule_reference
     check_outputs(m, alone, out);
     const bool may_be_refused =
         facts.promised && graph && least_pivot_of_any_order(exact.metric, m.n_bonds()) <= any_order_limit;
-    for (const int status : {alone.forces, alone.solve, alone.velocities, alone.metric}) {
+    for (const int status : {alone.forces, alone.solve, alone.velocities, alone.metric, alone.kept}) {
         if (may_be_refused && status == HOL_ERR_DEGENERATE) facts.promised = false;
         if (facts.promised) out.note(M_REFUSED, status != HOL_OK);
         if (!facts.regular) out.note(M_ACCEPTED, status != HOL_ERR_DEGENERATE);

@@ -15,6 +15,9 @@ enum molecule_quantity {
     M_FORCE,            ///< constraint forces
     M_VIRIAL,           ///< of hol_forces
     M_SOLVE,            ///< multipliers of hol_solve
+    M_KEPT,             ///< multipliers of hol_factors_forces
+    M_KEPT_FORCE,       ///< constraint forces of it
+    M_KEPT_SOLVE,       ///< multipliers of hol_factors_solve
     M_MU,               ///< multipliers of hol_project_velocities
     M_VELOCITY,         ///< the velocities themselves
     M_LOG_DET,          ///< ln det Z~
@@ -41,10 +44,10 @@ struct quantities<molecule_quantity> {
     static const char *name(molecule_quantity q)
     {
         static const char *const names[M_QUANTITIES] = {
-            "lambda",    "G",         "virial",       "lambda (solve)", "mu",        "velocities",
-            "ln det",    "ln det Z",  "Fixman",       "inverse",        "positions", "lambda (r)",
-            "of chains", "other one", "bonds left",   "refused step",   "refused",   "accepted",
-            "outputs",   "same bits", "units, mirror"};
+            "lambda",       "G",         "virial",     "lambda (solve)", "kept lambda", "kept G",
+            "kept solve",   "mu",        "velocities", "ln det",         "ln det Z",    "Fixman",
+            "inverse",      "positions", "lambda (r)", "of chains",      "other one",   "bonds left",
+            "refused step", "refused",   "accepted",   "outputs",        "same bits",   "units, mirror"};
         return names[q];
     }
     static bool for_information(molecule_quantity q)

@@ -74,13 +74,27 @@ molecule_results blank_results(const placement &a)
 {
     molecule_results o;
     o.lambda.assign(a.rhs.size(), blank());
-    o.solved = o.mu = o.position_lambda = o.log_det = o.log_det_z = o.lambda;
+    o.solved = o.mu = o.position_lambda = o.log_det = o.log_det_z = o.kept_lambda = o.kept_solved = o.lambda;
     o.g.assign(a.r.size(), blank());
-    o.fixman = o.g;
+    o.fixman = o.kept_g = o.g;
     o.virial.assign(9, blank());
     o.v = o.moved = a.v;
     o.r = a.drift;
     return o;
+}
+
+/** With factors that are kept: the first failure of three calls. */
+void compute_kept(const placement &a, molecule_results &o)
+{
+    hol_factors *made = nullptr;
+    o.kept = hol_factors_create(a.chains.get(), &made);
+    if (o.kept != HOL_OK) return;
+    const int update = hol_factors_update(made, a.r.data());
+    const int forces = hol_factors_forces(made, a.v.data(), a.f.data(), o.kept_lambda.data(), nullptr, o.kept_g.data(),
+                                          HOL_WRITE, nullptr);
+    const int solve = hol_factors_solve(made, 1, a.rhs.data(), o.kept_solved.data(), nullptr, HOL_WRITE, nullptr);
+    o.kept = update != HOL_OK ? update : forces != HOL_OK ? forces : solve;
+    hol_factors_destroy(made);
 }
 
 /** From values per molecule to values per bond. */
@@ -167,6 +181,7 @@ molecule_results compute(const placement &a, double dt)
     o.forces = hol_forces(chains, a.r.data(), a.v.data(), a.f.data(), o.lambda.data(), nullptr, o.g.data(), HOL_WRITE,
                           o.virial.data());
     o.solve = hol_solve(chains, a.r.data(), a.rhs.data(), o.solved.data(), nullptr, HOL_WRITE, nullptr);
+    compute_kept(a, o);
     o.metric = hol_metric(chains, a.r.data(), 1, log_det.data(), log_det_z.data(), nullptr, o.fixman.data(), HOL_WRITE);
     o.velocities = hol_project_velocities(chains, a.r.data(), o.v.data(), o.mu.data(), nullptr);
     o.positions = hol_project_positions(chains, a.r.data(), o.r.data(), o.moved.data(), dt, o.position_lambda.data(), 0,
@@ -186,6 +201,7 @@ molecule_results compute_in_views(const placement &a, double dt)
     o.forces = hol_forces_view(chains, r.input(), v.input(), f.input(), o.lambda.data(), nullptr, &g.view, HOL_WRITE,
                                o.virial.data());
     o.solve = hol_solve_view(chains, r.input(), a.rhs.data(), o.solved.data(), nullptr, HOL_WRITE, nullptr);
+    compute_kept(a, o);
     o.metric =
         hol_metric_view(chains, r.input(), 1, log_det.data(), log_det_z.data(), nullptr, &fixman.view, HOL_WRITE);
     o.velocities = hol_project_velocities_view(chains, r.input(), &projected.view, o.mu.data(), nullptr);
@@ -204,12 +220,13 @@ molecule_results compute_in_views(const placement &a, double dt)
 molecule_results part_of(const molecule_results &all, const placement &a, std::size_t molecule)
 {
     molecule_results o = all;
-    for (numbers *x : {&o.lambda, &o.solved, &o.mu, &o.position_lambda, &o.log_det, &o.log_det_z}) {
+    for (numbers *x :
+         {&o.lambda, &o.solved, &o.mu, &o.position_lambda, &o.log_det, &o.log_det_z, &o.kept_lambda, &o.kept_solved}) {
         const numbers from = *x;
         x->clear();
         for (const std::size_t k : a.bonds[molecule]) x->push_back(from[k]);
     }
-    for (numbers *x : {&o.g, &o.fixman, &o.v, &o.moved, &o.r}) {
+    for (numbers *x : {&o.g, &o.fixman, &o.v, &o.moved, &o.r, &o.kept_g}) {
         const numbers from = *x;
         x->clear();
         for (const std::size_t i : a.atoms[molecule])

@@ -43,9 +43,10 @@ struct placement {
 placement place(const std::vector<const hostile_molecule *> &parts, std::uint64_t shuffle);
 
 struct molecule_results {
-    int forces = 0, solve = 0, velocities = 0, metric = 0, positions = 0;  ///< statuses
-    numbers lambda, solved, mu, position_lambda;                           ///< per bond
-    numbers log_det, log_det_z;  ///< per bond, those of its molecule; 0 where it has none
+    int forces = 0, solve = 0, velocities = 0, metric = 0, positions = 0, kept = 0;  ///< statuses
+    numbers lambda, solved, mu, position_lambda;                                     ///< per bond
+    numbers kept_lambda, kept_solved, kept_g;  ///< of forces and right-hand sides with kept factors
+    numbers log_det, log_det_z;                ///< per bond, those of its molecule; 0 where it has none
     numbers g, fixman, v, r, moved;
     numbers virial;
 };

@@ -3,7 +3,7 @@
 // ordinary way (flagged.hpp).
 #include "core/kernels/kept/ldl.hpp"
 #include "core/kernels/kept/stars.hpp"
-#include "core/kernels/kept/trees.hpp"
+#include "core/kernels/kept/tree_scales.hpp"
 #include "core/kernels/kept/triangles.hpp"
 #include "core/kernels/molecules/blocks.hpp"
 #include "core/kernels/verbs/verbs.hpp"
@@ -106,7 +106,7 @@ private:
                                     Width<V>::all(1),
                                     {&call.v, &call.f, call.rhs, false},
                                     per_cancelled2};
-            good &= x.look_again(m, found.n_flagged);
+            good &= look_again(x, m, found.n_flagged, memory);
         }
         if (__builtin_expect(good != (in_use & kept_lanes), 0)) {
             for (int i = 0; i < used; ++i) lane[i] = molecule_of(unit, first + i);

@@ -99,21 +99,17 @@ struct KeptTreesSolve {
         return {bits(finite(way.sum)), way.n};
     }
 
-    // Looks again at the bonds of atoms at which one may be cancelling. Returns the lanes in which none is.
-    inline __attribute__((noinline)) unsigned look_again(Molecules<V> x, int32_t n) const {
-        for (int32_t i = 0; i < n; ++i) {
-            const int32_t slot = flagged[i], k = children(slot), first = first_child(slot);
-            const bool of_ring = slot >= s.n_tree;
-            const V shared = shared_error(slot);
-            for (int32_t a = of_ring ? -2 : -1; a < k; ++a) {
-                const int32_t place = a == -2 ? before(slot) : a == -1 ? slot : first + a;
-                const KeptBond<V> &bond = kept.bond[place];
-                const BondRow<V> row = {bond.d, bond.q, value[place].own, value[place].t, bond.l, bond.r};
-                const unsigned cancelling = bits(x.in_use() & less(left_of(row, shared), V{}));
-                if (cancelling) flag_cancelling_bond(x, row, place, shared, cancelling, x.margin);
-            }
+    // The square of that part of the error which all bonds at an atom share, as siblings.hpp has it.
+    V shared_error(int32_t slot) const {
+        const int k = children(slot);
+        V T2 = kept.bond[slot].q * (value[slot].t * value[slot].t);
+        if (slot >= s.n_tree) {
+            const int32_t to = before(slot);
+            T2 = mul_add(kept.bond[to].q, own2(value[to]), kept.bond[slot].q * own2(value[slot]));
         }
-        return bits(~less(x.margin, V{}));
+        for (int32_t a = 0, c = first_child(slot); a < k; ++a, ++c)
+            T2 = mul_add(kept.bond[c].q, value[c].t * value[c].t, T2);
+        return shared_error(slot, k, T2);
     }
 
 private:
@@ -248,7 +244,7 @@ private:
         if (pulled) put(pull[slot], g);
         return way;
     }
-    // As siblings.hpp has it, from the squares of the tensions at an atom.
+    // From the squares of the tensions at an atom.
     inline HOL_FORCED V shared_error(int32_t slot, int k, V T2) const {
         if (k > most_decomposed) {
             const V above = value[slot].t, rounding = kept.pair[s.pair_start[slot] + of_rounding];
@@ -256,17 +252,6 @@ private:
         }
         const V w = kept.w[slot];
         return (w * w) * (per_cancelled2 * T2);
-    }
-    V shared_error(int32_t slot) const {
-        const int k = children(slot);
-        V T2 = kept.bond[slot].q * (value[slot].t * value[slot].t);
-        if (slot >= s.n_tree) {
-            const int32_t to = before(slot);
-            T2 = mul_add(kept.bond[to].q, own2(value[to]), kept.bond[slot].q * own2(value[slot]));
-        }
-        for (int32_t a = 0, c = first_child(slot); a < k; ++a, ++c)
-            T2 = mul_add(kept.bond[c].q, value[c].t * value[c].t, T2);
-        return shared_error(slot, k, T2);
     }
     // A bond's own size, in squares.
     inline HOL_FORCED V own2(const KeptValue<V> &of) const { return mul_add(of.own, of.own, of.t * of.t); }
