@@ -1,5 +1,7 @@
 #include "core/factors/factors.hpp"
 
+#include <algorithm>
+
 #include "boundary.hpp"
 #include "mode.hpp"
 #include "view.hpp"
@@ -11,6 +13,7 @@ using holonomic::guarded;
 using holonomic::make_error;
 using holonomic::need;
 using holonomic::packed_array;
+using holonomic::sides_at_once;
 using holonomic::Status;
 using holonomic::viewed_array;
 
@@ -31,13 +34,17 @@ void solve(const hol_factors *factors, std::int64_t n_rhs, const double *rhs, do
         throw make_error(Status::value, "n_rhs is %lld; it must be at least 0", static_cast<long long>(n_rhs));
     const std::int64_t n_bonds = factors->n_bonds();
     need(n_rhs == 0 ? 0 : n_bonds, rhs, "rhs");
-    for (std::int64_t k = 0; k < n_rhs; ++k) {
-        FactorsSolve what;
-        what.rhs = rhs + k * n_bonds;
-        what.lambda = lambda ? lambda + k * n_bonds : nullptr;
-        what.g = g(k);
-        what.add = add;
-        factors->factors.solve(what, virial ? virial + 9 * k : nullptr);
+    FactorsSolve what[sides_at_once];
+    for (std::int64_t first = 0; first < n_rhs; first += sides_at_once) {
+        const int n = static_cast<int>(std::min<std::int64_t>(sides_at_once, n_rhs - first));
+        for (int i = 0; i < n; ++i) {
+            const std::int64_t k = first + i;
+            what[i].rhs = rhs + k * n_bonds;
+            what[i].lambda = lambda ? lambda + k * n_bonds : nullptr;
+            what[i].g = g(k);
+            what[i].add = add;
+        }
+        factors->factors.solve(what, n, virial ? virial + 9 * first : nullptr);
     }
 }
 

@@ -1095,7 +1095,7 @@ HOL_API int hol_factors_forces_view(const hol_factors *factors, const hol_const_
  * @param[in]     mode     HOL_WRITE or HOL_ADD
  * @param[out]    virial   [n_rhs][3][3], or NULL
  * @return as hol_solve; HOL_ERR_VALUE (n_rhs, mode); HOL_ERR_STATE as hol_factors_forces. After a bad molecule in one
- *         right-hand side the following ones are not solved for. Thread-safe on one object. Since 0.3.
+ *         right-hand side the following ones may not be solved for. Thread-safe on one object. Since 0.3.
  */
 HOL_API int hol_factors_solve(const hol_factors *factors, int64_t n_rhs, const double *rhs, double *lambda, double *g,
                               hol_mode mode, double *virial);

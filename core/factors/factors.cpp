@@ -76,7 +76,7 @@ void Factors::begin() {
     block_.assign(n, nullptr);
     left_.assign(n, 0);
     r_.resize(at(3 * chains_.n_atoms()));
-    kept_ = {this, room, block_.data()};
+    kept_ = {this, room, block_.data(), positions(), &box_};
 }
 
 // The set with those molecules alone that have one of these marks, and those with bodies.
@@ -128,79 +128,89 @@ void Factors::need_update() const {
                          "hol_factors_update made the factors");
 }
 
-void Factors::solve_all(const FactorsSolve &what, const double *rhs, double *virial) const {
-    need_update();
-    const std::int64_t n_atoms = chains_.n_atoms(), n = chains_.n_molecules();
-    const auto other = [&](const AtomArray &a) { return a.x && !a.packed; };
-    const std::int64_t n_others = other(what.v) + other(what.f) + other(what.g);
-    const std::int64_t of_left = (n / alignment + 1) * alignment;
-    const std::int64_t bytes = of_left + 3 * n_others * n_atoms * static_cast<std::int64_t>(sizeof(double));
-    char *memory = static_cast<char *>(thread_memory(Keep::factors, bytes));
-    if (!memory) throw std::bad_alloc();
-    unsigned char *const left = reinterpret_cast<unsigned char *>(memory);
-    std::fill(left, left + n, 0);
-    double *next = reinterpret_cast<double *>(memory + of_left);
-    const auto packed = [&](const AtomArray &a) {
-        if (!other(a)) return a;
-        double *const to = next;
-        next += 3 * n_atoms;
-        copy(a, n_atoms, to);
-        return packed_array(to);
-    };
-    KeptCall call{};
-    call.v = packed(what.v);
-    call.f = packed(what.f);
-    call.g = packed(what.g);
-    call.rhs = rhs;
-    call.lambda = what.lambda;
-    call.tension = what.tension;
-    call.add = what.add;
-    call.virial = virial != nullptr;
-    call.r = positions();
-    call.box = box_;
-    call.kept = &kept_;
-    call.left = left;
-    Tally tally = solve_kept(chains_, call);
-    if (other(what.g))
-        for (std::int64_t i = 0; i < n_atoms; ++i) write_atom(what.g, i, reinterpret_cast<double *>(call.g.x) + 3 * i);
-    double sum[9] = {}, of_rest[9] = {};
-    const int place[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
-    for (int i = 0; i < 9; ++i) sum[i] = tally.virial[place[i]];
+// Molecules that are left: those of which nothing is kept, and those marked in `left`. virial: of these is added.
+void Factors::solve_rest(const FactorsSolve &what, unsigned char *left, double *virial) const {
+    const std::int64_t n = chains_.n_molecules();
     std::unique_ptr<Chains> more;
+    const Chains *rest = !what.rhs && rest_of_forces_ ? rest_of_forces_.get() : rest_.get();
     if (n > 0 && std::memchr(left, 1, at(n))) {
         for (std::int64_t m = 0; m < n; ++m) left[m] |= left_[at(m)];
-        more = those(left, rhs ? 1 : any_mark);
+        more = those(left, what.rhs ? 1 : any_mark);
+        rest = more.get();
     }
-    const Chains *const known = !rhs && rest_of_forces_ ? rest_of_forces_.get() : rest_.get();
-    if (const Chains *const rest = more ? more.get() : known) {
-        if (rhs && what.rhs) {
-            holonomic::solve(*rest, positions(), rhs, what.lambda, what.g, what.add, virial ? of_rest : nullptr);
-        } else {
-            ForcesCall forces{};
-            forces.r = positions();
-            forces.v = what.v;
-            forces.f = what.f;
-            forces.g = what.g;
-            forces.lambda = what.lambda;
-            forces.tension = what.tension;
-            forces.add = what.add;
-            holonomic::forces(*rest, forces, virial ? of_rest : nullptr);
-        }
+    if (!rest) return;
+    double sum[9] = {};
+    if (what.rhs) {
+        holonomic::solve(*rest, positions(), what.rhs, what.lambda, what.g, what.add, virial ? sum : nullptr);
+    } else {
+        ForcesCall call{};
+        call.r = positions();
+        call.v = what.v;
+        call.f = what.f;
+        call.g = what.g;
+        call.lambda = what.lambda;
+        call.tension = what.tension;
+        call.add = what.add;
+        holonomic::forces(*rest, call, virial ? sum : nullptr);
     }
-    for (int i = 0; i < 9; ++i) sum[i] += of_rest[i];
+    for (int i = 0; virial && i < 9; ++i) virial[i] += sum[i];
+}
+
+// Arrays per atom are packed. rhs: right-hand sides that v and f give, of a single one; else null.
+void Factors::solve_packed(const FactorsSolve *what, int n, const double *rhs, double *virial) const {
+    const std::int64_t n_molecules = chains_.n_molecules();
+    unsigned char *const left = static_cast<unsigned char *>(thread_memory(Keep::factors, n * n_molecules + 1));
+    if (!left) throw std::bad_alloc();
+    std::memset(left, 0, at(n * n_molecules));
+    KeptCall call[sides_at_once];
+    for (int k = 0; k < n; ++k)
+        call[k] = {what[k].v,   what[k].f,         what[k].g, rhs ? rhs : what[k].rhs, what[k].lambda, what[k].tension,
+                   what[k].add, virial != nullptr, &kept_,    left + k * n_molecules};
+    const Tally tally = solve_kept(chains_, call, n);
+    double sum[9];
+    const int place[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
+    for (int i = 0; virial && i < 9; ++i) sum[i] = tally.virial[place[i]];
+    for (int k = 0; k < n; ++k) solve_rest(what[k], call[k].left, virial ? sum : nullptr);
     if (virial) write_virial(sum, virial);
 }
 
+void Factors::solve_one(const FactorsSolve &what, const double *rhs, double *virial) const {
+    const auto is_other = [](const AtomArray &a) { return a.x && !a.packed; };
+    const int n_others = is_other(what.v) + is_other(what.f) + is_other(what.g);
+    if (n_others == 0) return solve_packed(&what, 1, rhs, virial);
+    const std::int64_t n_atoms = chains_.n_atoms(), numbers = 3 * n_atoms;
+    double *next = static_cast<double *>(
+        thread_memory(Keep::arrays_of_factors, n_others * numbers * static_cast<std::int64_t>(sizeof(double))));
+    if (!next && numbers > 0) throw std::bad_alloc();
+    FactorsSolve packed = what;
+    for (AtomArray *const a : {&packed.v, &packed.f, &packed.g}) {
+        if (!is_other(*a)) continue;
+        copy(*a, n_atoms, next);
+        *a = packed_array(next);
+        next += numbers;
+    }
+    solve_packed(&packed, 1, rhs, virial);
+    if (is_other(what.g))
+        for (std::int64_t i = 0; i < n_atoms; ++i)
+            write_atom(what.g, i, reinterpret_cast<double *>(packed.g.x) + 3 * i);
+}
+
 void Factors::forces(const FactorsSolve &what, double *virial) const {
-    if (!has_rate_) return solve_all(what, nullptr, virial);
     need_update();
+    if (!has_rate_) return solve_one(what, nullptr, virial);
     const std::int64_t bytes = chains_.n_bonds() * static_cast<std::int64_t>(sizeof(double));
     double *const rhs = static_cast<double *>(thread_memory(Keep::sides_of_factors, bytes));
     if (!rhs && bytes > 0) throw std::bad_alloc();
     right_hand_sides(chains_, box_, L_, positions(), what.v, what.f, rhs);
-    solve_all(what, rhs, virial);
+    solve_one(what, rhs, virial);
 }
 
-void Factors::solve(const FactorsSolve &what, double *virial) const { solve_all(what, what.rhs, virial); }
+void Factors::solve(const FactorsSolve *what, int n, double *virial) const {
+    need_update();
+    bool together = n > 1 && !virial && !chains_.plan().copied;
+    for (int k = 0; k < n; ++k) together = together && (what[k].g.packed || !what[k].g.x);
+    if (together) return solve_packed(what, n, nullptr, nullptr);
+    for (int k = 0; k < n; ++k) solve_one(what[k], nullptr, virial ? virial + 9 * k : nullptr);
+}
 
 }  // namespace holonomic

@@ -11,13 +11,16 @@
 
 namespace holonomic {
 
-// What a solve reads and writes; arrays per atom of any layout. One of rhs, or v and f, or none.
+// What a solve reads and writes; arrays per atom of any layout. Right-hand sides rhs, or those of v and f.
 struct FactorsSolve {
     AtomArray v{}, f{}, g{};
     const double *rhs = nullptr;
     double *lambda = nullptr, *tension = nullptr;
     bool add = false;
 };
+
+// So many right-hand sides go through the molecules together.
+constexpr int sides_at_once = 16;
 
 // Molecules whose factors are not kept are left to the ordinary verbs: those of shapes that kernels keep none of, and
 // those that plain products do not answer for.
@@ -34,7 +37,8 @@ public:
 
     // Throw Error: of Status::state if there has been no update since the set was changed. virial [9] or null.
     void forces(const FactorsSolve &what, double *virial) const;
-    void solve(const FactorsSolve &what, double *virial) const;
+    // n right-hand sides, at most sides_at_once; virial [n][9] or null.
+    void solve(const FactorsSolve *what, int n, double *virial) const;
 
     const Chains &chains() const { return chains_; }
 
@@ -42,7 +46,9 @@ private:
     static double *room(void *owner, std::int64_t molecule, std::int64_t doubles);
     void begin();
     void need_update() const;
-    void solve_all(const FactorsSolve &what, const double *rhs, double *virial) const;
+    void solve_one(const FactorsSolve &what, const double *rhs, double *virial) const;
+    void solve_packed(const FactorsSolve *what, int n, const double *rhs, double *virial) const;
+    void solve_rest(const FactorsSolve &what, unsigned char *left, double *virial) const;
     std::unique_ptr<Chains> those(const unsigned char *left, unsigned char marks) const;
     AtomArray positions() const;
 

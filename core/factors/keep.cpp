@@ -50,26 +50,36 @@ struct KeepWork final : KeptWork {
 };
 
 struct SolveWork final : KeptWork {
-    const Variants<KeptCall> calls;
-    SolveWork(const KeptCall &call, Apart &apart)
-        : KeptWork(call.left), calls(
-                                   call, apart,
-                                   [&](KeptCall &c) {
-                                       c.rhs = apart.inputs(call.rhs);
-                                       c.lambda = apart.results(call.lambda);
-                                       c.tension = apart.results(call.tension);
-                                   },
-                                   [](KeptCall &) {}) {}
+    const Variants<KeptCall> variants;  // of a single call
+    const KeptCall *const calls;
+    const int n_calls;
+    SolveWork(const KeptCall *given, int n, Apart &apart)
+        : KeptWork(given->left), variants(
+                                     *given, apart,
+                                     [&](KeptCall &c) {
+                                         c.rhs = apart.inputs(given->rhs);
+                                         c.lambda = apart.results(given->lambda);
+                                         c.tension = apart.results(given->tension);
+                                     },
+                                     [](KeptCall &) {}),
+          calls(given), n_calls(n) {}
+    template <class Body>
+    void for_each_call(int where, const Body &body) const {
+        if (n_calls == 1) return body(variants[where]);
+        for (int i = 0; i < n_calls; ++i) body(calls[i]);
+    }
     void unit(const Unit &unit, int where, double *scratch, Tally &tally) const override {
-        kernels(unit).kept.solve_chains(calls[where], unit, scratch, tally);
+        for_each_call(where, [&](const KeptCall &c) { kernels(unit).kept.solve_chains(c, unit, scratch, tally); });
     }
     void unit(const MoleculeUnit &unit, int where, double *scratch, Tally &tally) const override {
-        if (!k.kept.is_kept(*unit.elimination) || (!calls[where].rhs && is_for_sides_alone(unit))) return;
-        k.kept.solve_molecules(calls[where], unit, scratch, tally);
+        if (!k.kept.is_kept(*unit.elimination) || (!calls->rhs && is_for_sides_alone(unit))) return;
+        for_each_call(where, [&](const KeptCall &c) { k.kept.solve_molecules(c, unit, scratch, tally); });
     }
     void long_chain(const Lane &lane, int where, const Team &, double *store, Tally &tally) const override {
-        if (calls[where].rhs)
-            kernels_for_one_chain().kept.solve_chains(calls[where], {&lane, 1, false, false}, store, tally);
+        if (!calls->rhs) return;
+        for_each_call(where, [&](const KeptCall &c) {
+            kernels_for_one_chain().kept.solve_chains(c, {&lane, 1, false, false}, store, tally);
+        });
     }
 };
 
@@ -77,12 +87,14 @@ struct SolveWork final : KeptWork {
 
 void keep(const Chains &chains, const KeepCall &call) { execute(chains, KeepWork(call)); }
 
-Tally solve_kept(const Chains &chains, const KeptCall &call) {
+Tally solve_kept(const Chains &chains, const KeptCall *calls, int n) {
     Apart apart(chains);
-    const Tally tally = execute(chains, SolveWork(call, apart));
+    const Tally tally = execute(chains, SolveWork(calls, n, apart));
     apart.put_back();
-    clear_unconstrained(chains, call.lambda);
-    clear_unconstrained(chains, call.tension);
+    for (int k = 0; k < n; ++k) {
+        clear_unconstrained(chains, calls[k].lambda);
+        clear_unconstrained(chains, calls[k].tension);
+    }
     return tally;
 }
 

@@ -10,6 +10,7 @@ constexpr unsigned char left_of_forces = 2;
 
 // Both mark the molecules that are left to the ordinary verbs. Throw std::bad_alloc before any work is done.
 void keep(const Chains &chains, const KeepCall &call);
-Tally solve_kept(const Chains &chains, const KeptCall &call);
+// n calls, unit by unit; more than one only of sets whose plan copies nothing.
+Tally solve_kept(const Chains &chains, const KeptCall *calls, int n);
 
 }  // namespace holonomic

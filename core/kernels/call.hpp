@@ -171,6 +171,8 @@ struct KeptFactors {
     void *owner;
     double *(*room)(void *owner, int64_t molecule, int64_t doubles);  // to be filled; nullptr: there is no memory
     const double *const *block;                                       // [n_molecules] or nullptr: that one is not kept
+    AtomArray r;                                                      // what they were made of; packed
+    const Box *box;
 };
 
 // Keeps them, and marks the molecules that it has not kept.
@@ -184,11 +186,10 @@ struct KeepCall {
 // Solves with them: with given right-hand sides, or with those of velocities and forces. Marks the molecules of which
 // nothing has been written: other ways are left to them. Those that are marked already are passed over.
 struct KeptCall {
-    AtomArray r, v, f, g;  // packed; r and the box are those of the factors
+    AtomArray v, f, g;  // packed
     const double *rhs;
     double *lambda, *tension;
     bool add, virial;
-    Box box;
     const KeptFactors *kept;
     unsigned char *left;
 };

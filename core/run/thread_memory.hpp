@@ -19,6 +19,7 @@ enum class Keep {
     rescaled,
     factors,
     sides_of_factors,
+    arrays_of_factors,
     last
 };
 

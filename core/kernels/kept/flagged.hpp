@@ -11,6 +11,11 @@ HOL_NOINLINE void leave(const MoleculeLane *lane, unsigned which, unsigned char 
     for (; which; which &= which - 1) left[lane[__builtin_ctz(which)].molecule] = 1;
 }
 
+// The same of the ordinary verb.
+HOL_INLINE ForcesCall forces_call(const KeptCall &call) {
+    return {call.kept->r, call.v, call.f, call.g, call.lambda, call.tension, call.add, call.virial, *call.kept->box};
+}
+
 // Molecules that are kept, but one of whose bonds is cancelling, are solved in twice the precision. What it does not
 // answer for is left.
 HOL_NOINLINE void solve_extended(const KeptCall &call, const EliminationPlan &s, const MoleculeLane *lane,
@@ -19,13 +24,11 @@ HOL_NOINLINE void solve_extended(const KeptCall &call, const EliminationPlan &s,
         const unsigned of = which & -which;
         Tally one = empty_tally();
         if (call.rhs)
-            solve_flagged(
-                SolveCall{call.r, call.g, call.rhs, call.lambda, call.tension, call.add, call.virial, call.box}, s,
-                lane, of, memory, one);
+            solve_flagged(SolveCall{call.kept->r, call.g, call.rhs, call.lambda, call.tension, call.add, call.virial,
+                                    *call.kept->box},
+                          s, lane, of, memory, one);
         else
-            solve_flagged(
-                ForcesCall{call.r, call.v, call.f, call.g, call.lambda, call.tension, call.add, call.virial, call.box},
-                s, lane, of, memory, one);
+            solve_flagged(forces_call(call), s, lane, of, memory, one);
         if (one.n_bad > 0)
             leave(lane, of, call.left);
         else

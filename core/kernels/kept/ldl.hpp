@@ -71,7 +71,7 @@ struct SolveByLdl {
         const LdlBlock<V> block = {*unit.elimination, lane, used, true, true, unit.team, memory};
         const Inputs in = {call.v.x ? &call.v : nullptr, call.f.x ? &call.f : nullptr, call.rhs, false};
         const int terms = call.rhs ? given : (call.v.x ? squares : 0) | (call.f.x ? pulls : 0);
-        LdlLinear<V> x = block.linear(call.box, call.r, in, terms);
+        LdlLinear<V> x = block.linear(*call.kept->box, call.kept->r, in, terms);
         const Rows<V> bonds = x.d;
         const KeptLdl<V> kept = {x.s, from};
         kept.lend(x);

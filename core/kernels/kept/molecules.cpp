@@ -17,8 +17,8 @@ bool is_kept(const EliminationPlan &s) {
            (!s.alone && (s.way.given == Way::tree || s.way.given == Way::ring));
 }
 
-// Four bonds are kept as a tree.
-static bool is_star(const EliminationPlan &s) { return s.way.forces == Way::star && s.n_bonds == 3; }
+// Stars whose closed forms are compiled; others are kept as trees.
+static int star_bonds(const EliminationPlan &s) { return !small_set && s.way.forces == Way::star ? s.n_bonds : 0; }
 
 struct KeepTrees {
     const KeepCall &call;
@@ -38,7 +38,6 @@ struct KeepTrees {
     }
 };
 
-// As for_each_block() goes through a unit. What the next block has in common with the last one is not found again.
 struct SolveTrees {
     const KeptCall &call;
     const MoleculeUnit &unit;
@@ -52,36 +51,14 @@ struct SolveTrees {
           per_cancelled2(1 / most_cancelled2(s.n_bonds)) {}
 
     void solve() const {
-        MoleculeLane lane[W];
-        int64_t first = 0;
-        if (unit.count >= W) {
-            Atoms<vec> at = atoms<vec>(lane, 0, W);
-            for (;;) {
-                block(at, lane, first, W);
-                first += W;
-                if (unit.count - first < W) break;
-                if (unit.regular && at.layout == rows_in_order)
-                    at.advance(s.n_atoms, s.n_bonds);
-                else
-                    at = atoms<vec>(lane, first, W);
-            }
-        }
-        const int left = static_cast<int>(unit.count - first);
-        if (left > 1) block(atoms<vec>(lane, first, left), lane, first, left);
-        if (left == 1) block(atoms<double>(lane, first, 1), lane, first, 1);
+        for_each_kept_block(unit,
+                            [&](const auto &at, int64_t first, int used) HOL_FORCED { this->block(at, first, used); });
     }
 
 private:
     template <class V>
-    Atoms<V> atoms(MoleculeLane *lane, int64_t first, int used) const {
-        for (int i = 0; i < used; ++i) lane[i] = molecule_of(unit, first + i);
-        return Atoms<V>(lane, used, true);
-    }
-
-    template <class V>
-    inline HOL_FORCED void block(const Atoms<V> &at, MoleculeLane *lane, int64_t first, int used) const {
-        const int64_t molecule = unit.regular ? unit.lanes[0].molecule + first : unit.lanes[first].molecule;
-        double *const from = const_cast<double *>(call.kept->block[molecule]);
+    inline HOL_FORCED void block(const Atoms<V> &at, int64_t first, int used) const {
+        double *const from = const_cast<double *>(call.kept->block[number_of(unit, first)]);
         if (!from) return;
         const KeptTrees<V> kept(s, from);
         Memory<V> memory = {scratch};
@@ -91,6 +68,7 @@ private:
         const unsigned in_use = (1u << used) - 1, kept_lanes = static_cast<unsigned>(from[0]);
         const Found found = call.g.x ? x.template down<true>(pull) : x.template down<false>(pull);
         unsigned good = kept_lanes & in_use & found.finite;
+        MoleculeLane lane[Width<V>::lanes];
         if (__builtin_expect(found.n_flagged > 0, 0)) {
             for (int i = 0; i < used; ++i) lane[i] = molecule_of(unit, first + i);
             const Box no_box = {};
@@ -180,7 +158,9 @@ void keep_molecules(const KeepCall &call, const MoleculeUnit &unit, double *scra
         KeepByLdl work = {call, unit};
         return for_each_block(unit, scratch, ahead, work);
     }
-    if (is_star(*unit.elimination) && do_stars<3>(KeepStars{call}, LeaveStars{call.left, ahead}, unit, scratch)) return;
+    const LeaveStars rest = {call.left, ahead};
+    if (star_bonds(*unit.elimination) == 3 && do_stars<3>(KeepStars<3>{call}, rest, unit, scratch)) return;
+    if (star_bonds(*unit.elimination) == 4 && do_stars<4>(KeepStars<4>{call}, rest, unit, scratch)) return;
     KeepTrees work = {call, *unit.elimination};
     for_each_block(unit, scratch, ahead, work);
 }
@@ -193,11 +173,9 @@ void solve_kept_molecules(const KeptCall &call, const MoleculeUnit &unit, double
         SolveByLdl work = {call, unit, tally};
         return for_each_block(unit, scratch, ahead, work);
     }
-    const ForcesCall forces = {call.r,       call.v,   call.f,      call.g,  call.lambda,
-                               call.tension, call.add, call.virial, call.box};
-    if (is_star(*unit.elimination) && do_stars<3>(SolveStars{call, forces, tally},
-                                                  ExtendedStars{call, *unit.elimination, ahead, tally}, unit, scratch))
-        return;
+    const int bonds_of_star = star_bonds(*unit.elimination);
+    if (bonds_of_star == 3) return SolveStars<3>{call, unit, scratch, tally}.solve();
+    if (bonds_of_star == 4) return SolveStars<4>{call, unit, scratch, tally}.solve();
     SolveTrees(call, unit, scratch, tally).solve();
 }
 

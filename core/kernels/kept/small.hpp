@@ -112,9 +112,10 @@ static int64_t solve_small(const KeptCall &call, const Unit &unit, const Block &
 }
 
 static int64_t solve_small_ones(const KeptCall &call, const Unit &unit, Block &block, int64_t first, Tally &tally) {
-    return any_molecules(unit, block, first, call.box.shape != Box::none, true, [&](auto place, auto uniform, auto) {
-        return solve_small<typename decltype(place)::type, uniform>(call, unit, block, first, tally);
-    });
+    return any_molecules(
+        unit, block, first, call.kept->box->shape != Box::none, true, [&](auto place, auto uniform, auto) {
+            return solve_small<typename decltype(place)::type, uniform>(call, unit, block, first, tally);
+        });
 }
 
 }  // namespace holonomic::HOL_ISA::kept

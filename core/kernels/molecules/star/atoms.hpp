@@ -63,6 +63,14 @@ struct StarAtoms {
             for (int k = 0; k < N; ++k)
                 if (which >> i & 1) out[at.bond[i] + k] = Width<V>::get(value[k], i);
     }
+    inline HOL_FORCED void read_bonds(const double *in, double factor, V *value) const {
+        HOL_UNROLL
+        for (int k = 0; k < N; ++k) {
+            HOL_UNROLL
+            for (int i = 0; i < at.lanes; ++i) Width<V>::set(value[k], i, in[at.bond[i] + k]);
+            value[k] = Width<V>::all(factor) * value[k];
+        }
+    }
 };
 
 // Masses; atoms of a star are counted from its centre, 0.

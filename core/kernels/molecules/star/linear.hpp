@@ -51,8 +51,18 @@ struct Star<3, V> {
         for (int k = 0; k < 3; ++k) t[k] = r * mul_add(adj[k][2], y[2], mul_add(adj[k][1], y[1], adj[k][0] * y[0]));
     }
 
-    // The lanes in which t of y is good: nothing was lost, and no multiplier is a small difference of large terms, as
-    // siblings.hpp has it, with (S^-1)_kk for the reciprocal pivot.
+    // For siblings.hpp: the reciprocal pivot, which is (S^-1)_kk; a multiplier alone, per right-hand side; a right-hand
+    // side without the centre's part that is not in it.
+    inline HOL_FORCED V of_one(int k) const { return adj[k][k] * r; }
+    inline HOL_FORCED V alone(int k) const { return of_one(k); }
+    inline HOL_FORCED V without_centre(int, const V &y) const { return y; }
+    inline HOL_FORCED V of_inverse(int k, int l) const { return adj[k][l] * r; }
+
+    // The lanes in which nothing was lost.
+    inline HOL_FORCED MaskOf<V> is_regular() const {
+        return ~less(margin, V{}) & ordinary_squares<V>(abs(r), abs(r), most_of_three);
+    }
+    // The lanes in which t of y is good: nothing was lost, and no multiplier is a small difference of large terms.
     inline HOL_FORCED MaskOf<V> good(const V *y, const V *t) const {
         V T2 = q[0] * (t[0] * t[0]), least = margin, sum = t[0];
         HOL_UNROLL
@@ -63,7 +73,7 @@ struct Star<3, V> {
         const V shared = (m.w[0] * m.w[0]) * ((1 / (most_cancelled * most_cancelled)) * T2);
         HOL_UNROLL
         for (int k = 0; k < 3; ++k) {
-            const V of_one = adj[k][k] * r, alone = y[k] * of_one;
+            const V of_one = this->of_one(k), alone = y[k] * of_one;
             least = min(mul_add(-shared, q[k] * (of_one * of_one), mul_add(t[k], t[k], alone * alone)), least);
         }
         return finite(sum) & ~less(least, V{}) & ordinary_squares<V>(abs(r), abs(r), most_of_three);
@@ -108,9 +118,20 @@ struct Star<4, V> {
         return less(least_light * min(min(m.w[1], m.w[2]), min(m.w[3], m.w[4])), m.w[0]);
     }
 
-    // The lanes in which t of y is good. (S^-1)_kk is at least 1 / S_kk, and at most 1 / a_k.
-    inline HOL_FORCED MaskOf<V> good(const V *y, const V *t) const {
+    // As of three bonds: (S^-1)_kk is at least 1 / S_kk, and at most 1 / a_k.
+    inline HOL_FORCED V of_one(int k) const { return equations.per_a[k]; }
+    inline HOL_FORCED V alone(int k) const { return m.share[k] * of_one(k); }
+    inline HOL_FORCED V without_centre(int k, const V &y) const { return mul_add(-m.w[0], dot(d[k], force), y); }
+    inline HOL_FORCED V of_inverse(int k, int l) const {
+        const V of_centre = (m.w[0] * equations.per_a[l]) * dot(d[k], equations.N * d[l]);
+        return equations.per_a[k] * (Width<V>::all(k == l) - of_centre);
+    }
+    inline HOL_FORCED MaskOf<V> is_regular() const {
         const V *const a = equations.a;
+        return ordinary_squares(min(min(a[0], a[1]), min(a[2], a[3])), max(max(a[0], a[1]), max(a[2], a[3])));
+    }
+    // The lanes in which t of y is good.
+    inline HOL_FORCED MaskOf<V> good(const V *y, const V *t) const {
         V T2 = q[0] * (t[0] * t[0]), sum = t[0];
         HOL_UNROLL
         for (int k = 1; k < 4; ++k) {
@@ -121,16 +142,14 @@ struct Star<4, V> {
         V least = shared;
         HOL_UNROLL
         for (int k = 0; k < 4; ++k) {
-            const V side = mul_add(-m.w[0], dot(d[k], force), y[k]);
-            const V of_one = equations.per_a[k], alone = side * (m.share[k] * of_one);
+            const V of_one = this->of_one(k), alone = without_centre(k, y[k]) * this->alone(k);
             const V left = mul_add(-shared, q[k] * (of_one * of_one), mul_add(t[k], t[k], alone * alone));
             least = k == 0 ? left : min(left, least);
         }
         MaskOf<V> fine = ~less(least, V{});
         const MaskOf<V> light = is_light();
         if (__builtin_expect(any(light), 0)) fine = (fine & ~light) | (light & equations.keeps_digits(q, y));
-        return finite(sum) & fine &
-               ordinary_squares(min(min(a[0], a[1]), min(a[2], a[3])), max(max(a[0], a[1]), max(a[2], a[3])));
+        return finite(sum) & fine & is_regular();
     }
 
     // The pulls on a light centre are small beside their terms, and take away most of its force; those on another one
@@ -157,6 +176,67 @@ HOL_INLINE void write_star_bonds(const Atoms &atoms, const V *t, double factor, 
     atoms.write_bonds(out, value, which);
 }
 
+struct StarOutputs {
+    const AtomArray &g;
+    double *lambda, *tension;
+    bool add, virial;
+};
+
+// Right-hand sides, as load.hpp makes them.
+template <Inlined where, class AnyStar, int N, class V>
+HOL_INLINE void find_star_sides(const AtomArray &v, const AtomArray &f, const StarAtoms<where, N, V> &atoms,
+                                AnyStar &star, V *y) {
+    Vector3<V> a[N + 1];
+    HOL_UNROLL
+    for (int k = 0; k < N; ++k) y[k] = V{};
+    if (v.x) {
+        atoms.read(v, a);
+        HOL_UNROLL
+        for (int k = 0; k < N; ++k) {
+            const Vector3<V> dv = a[k + 1] - a[0];
+            y[k] = dot(dv, dv);
+        }
+    }
+    if (f.x) {
+        atoms.read(f, a);
+        const Vector3<V> first = star.of_centre(a[0]);
+        HOL_UNROLL
+        for (int k = 0; k < N; ++k) {
+            const Vector3<V> d = star.d[k], sum = add_times(first, star.m.w[k + 1], a[k + 1]);
+            y[k] = mul_add(d.z, sum.z, mul_add(d.y, sum.y, mul_add(d.x, sum.x, y[k])));
+        }
+    }
+}
+
+// Solves and writes. Returns the lanes that are done.
+template <Inlined where, class AnyStar, int N, class V>
+HOL_INLINE unsigned finish_star(const StarOutputs &to, const StarAtoms<where, N, V> &atoms, AnyStar &star, const V *y,
+                                MaskOf<V> in_use, Tally &tally) {
+    V t[N];
+    star.solve(y, t);
+    const unsigned good = bits(in_use & star.good(y, t));
+    if (!good) return good;
+    if (to.lambda) write_star_bonds<N>(atoms, t, 0.5, to.lambda, good);
+    if (to.tension) {
+        V T[N];
+        HOL_UNROLL
+        for (int k = 0; k < N; ++k) T[k] = t[k] * sqrt(star.q[k]);
+        write_star_bonds<N>(atoms, T, 1, to.tension, good);
+    }
+    if (to.virial) add_bonds_virial<N>(star.d, t, 1, good, tally);
+    if (!to.g.x) return good;
+    Vector3<V> g[N + 1];
+    star.pull(t, g);
+    if (to.add) {
+        Vector3<V> before[N + 1];
+        atoms.read(to.g, before);
+        HOL_UNROLL
+        for (int i = 0; i <= N; ++i) g[i] = before[i] + g[i];
+    }
+    atoms.write(to.g, g, good);
+    return good;
+}
+
 struct StarForcesVerb {
     static constexpr bool in_steps = false;
     template <int N, class V>
@@ -174,62 +254,8 @@ struct StarForcesVerb {
         atoms.read(call.r, r);
         atoms.take_bonds(r, call.box, star.d);
         star.invert();
-        find_sides(atoms, star, y);
-        return finish(atoms, star, y, in_use);
-    }
-
-    // Solves and writes. Returns the lanes that are done.
-    template <Inlined where, int N, class V>
-    inline HOL_FORCED unsigned finish(const StarAtoms<where, N, V> &atoms, Star<N, V> &star, const V *y,
-                                      MaskOf<V> in_use) const {
-        V t[N];
-        star.solve(y, t);
-        const unsigned good = bits(in_use & star.good(y, t));
-        if (!good) return good;
-        if (call.lambda) write_star_bonds<N>(atoms, t, 0.5, call.lambda, good);
-        if (call.tension) {
-            V T[N];
-            HOL_UNROLL
-            for (int k = 0; k < N; ++k) T[k] = t[k] * sqrt(star.q[k]);
-            write_star_bonds<N>(atoms, T, 1, call.tension, good);
-        }
-        if (call.virial) add_bonds_virial<N>(star.d, t, 1, good, tally);
-        if (!call.g.x) return good;
-        Vector3<V> g[N + 1];
-        star.pull(t, g);
-        if (call.add) {
-            Vector3<V> before[N + 1];
-            atoms.read(call.g, before);
-            HOL_UNROLL
-            for (int i = 0; i <= N; ++i) g[i] = before[i] + g[i];
-        }
-        atoms.write(call.g, g, good);
-        return good;
-    }
-
-    // As load.hpp makes them.
-    template <Inlined where, int N, class V>
-    inline HOL_FORCED void find_sides(const StarAtoms<where, N, V> &atoms, Star<N, V> &star, V *y) const {
-        Vector3<V> a[N + 1];
-        HOL_UNROLL
-        for (int k = 0; k < N; ++k) y[k] = V{};
-        if (call.v.x) {
-            atoms.read(call.v, a);
-            HOL_UNROLL
-            for (int k = 0; k < N; ++k) {
-                const Vector3<V> dv = a[k + 1] - a[0];
-                y[k] = dot(dv, dv);
-            }
-        }
-        if (call.f.x) {
-            atoms.read(call.f, a);
-            const Vector3<V> first = star.of_centre(a[0]);
-            HOL_UNROLL
-            for (int k = 0; k < N; ++k) {
-                const Vector3<V> d = star.d[k], f = add_times(first, star.m.w[k + 1], a[k + 1]);
-                y[k] = mul_add(d.z, f.z, mul_add(d.y, f.y, mul_add(d.x, f.x, y[k])));
-            }
-        }
+        find_star_sides(call.v, call.f, atoms, star, y);
+        return finish_star({call.g, call.lambda, call.tension, call.add, call.virial}, atoms, star, y, in_use, tally);
     }
 };
 
