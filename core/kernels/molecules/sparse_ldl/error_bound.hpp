@@ -26,9 +26,13 @@ struct LdlErrorBound {
     LdlResidual<V> residual;
     unsigned left;  // lanes in which nothing contradicts
     // Columns of a tile whose bound fails by little, times lanes; and how many each lane has looked at. Where a
-    // molecule needs a closer look at more, refinement is cheaper.
-    static constexpr int32_t most_looks(int32_t columns) { return columns / 32 + 2; }
-    int32_t missed[lanes == 1 ? most_looks(LdlPlan::columns_of_tile) : lanes * most_looks(largest_graph_in_lanes)];
+    // molecule needs a closer look at more, refinement is cheaper. Right-hand sides that are given are as often small
+    // as large.
+    static constexpr int32_t most_looks(int32_t columns, bool given) {
+        return given ? columns / 16 + 4 : columns / 32 + 2;
+    }
+    int32_t missed[lanes == 1 ? most_looks(LdlPlan::columns_of_tile, true)
+                              : lanes * most_looks(largest_graph_in_lanes, true)];
     int32_t n_missed = 0, looks[lanes];
     // Equations that are left with more than they may: of each tile a list in the memory of refinement, which ends
     // where there is no column. Beside it, in `found`, the largest R over what it may be.
@@ -90,7 +94,7 @@ struct LdlErrorBound {
     void note_missed(const Tile &tile, int32_t k, unsigned which) {
         for (; which; which &= which - 1) {
             const int lane = __builtin_ctz(which);
-            if (looks[lane]++ < most_looks(tile.end - tile.first)) {
+            if (looks[lane]++ < most_looks(tile.end - tile.first, in.rhs)) {
                 const Bound bound = bound_of(tile, k, lane);
                 if (bound.holds()) continue;
                 if (bound.R <= most_beyond * bound.most) {
