@@ -142,16 +142,17 @@ void batches_positions(const PositionsCall &call, const MoleculeUnit &unit, doub
     NextMolecules ahead({&call.r_ref, &call.r, &call.v}, call.lambda);
     for_each_batch(unit, scratch, ahead, [&](const TreeBatch &f, const MoleculeLane *lane, Memory<vec> memory) {
         BatchNewton newton(f, lane, packed, memory);
-        const BatchPositions lanes{call, newton, tally};
-        unsigned good;
+        BatchPositions lanes = {{call, lane, tally}, newton, ahead};
+        unsigned rest;
         if (f.n_pieces > 0) {
-            LargeTreeNewton one{newton, unit.team, reinterpret_cast<LargeTreeNewton::Found *>(memory.next)};
+            const LargeTreeNewton one{newton, unit.team, reinterpret_cast<LargeTreeNewton::Found *>(memory.next)};
             memory.next += LargeTreeNewton::bytes(f) / static_cast<int64_t>(sizeof(double));
-            good = LargeTreePositions{one, lanes, tally}.solve(lane->molecule) ? 1 : 0;
+            LargeTreePositions tree = {{call, lane, tally}, one, lanes};
+            rest = solve_positions(tree, Flag{true}, [] {});
         } else {
-            good = lanes.solve([&] { ahead.fetch(); });
+            rest = solve_positions(lanes, first_lanes(f.n_trees), [&] { ahead.fetch(); });
         }
-        leave_flagged(call, f, lane, good, memory.next, tally);
+        leave_flagged(call, f, lane, ~rest, memory.next, tally);
     });
 }
 

@@ -55,7 +55,8 @@ bool solve_network(const VelocitiesCall &call, const EliminationPlan &s, const M
 
 bool solve_network(const PositionsCall &call, const EliminationPlan &s, const MoleculeLane &lane, bool packed,
                    const LongTeam *team, double *scratch, Tally &tally) {
-    return NetPositions(call, *s.network, s.fixed, lane, packed, team, {scratch}, tally).solve();
+    NetPositions x(call, *s.network, s.fixed, lane, packed, team, {scratch}, tally);
+    return solve_positions(x, Flag{true}, [] {}) == 0;
 }
 
 }  // namespace holonomic::HOL_ISA

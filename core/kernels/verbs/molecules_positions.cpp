@@ -45,10 +45,13 @@ int64_t molecules_scratch_bytes(const EliminationPlan &s) {
 struct BlockPositionsWork : PositionsWork {
     template <class V>
     void block(const MoleculeLane *lane, int used, bool known, double *scratch) const {
-        const Ways &ways = elimination.way;
-        if (ways.positions != Way::paths) return by_way<V>(ways.positions, lane, used, known, scratch);
-        if (!path_positions(call, elimination, *lane, team, scratch, tally))
-            by_way<V>(ways.without_paths, lane, used, false, scratch);
+        Way way = elimination.way.positions;
+        if (way == Way::paths) {
+            if (path_positions(call, elimination, *lane, team, scratch, tally)) return;
+            way = elimination.way.without_paths;
+            known = false;
+        }
+        by_way<V>(way, lane, used, known, scratch);
     }
 };
 
