@@ -1,4 +1,5 @@
 // Position level of molecules that are no chains.
+#include "core/kernels/molecules/armed_tree/linear.hpp"
 #include "core/kernels/molecules/linear.hpp"
 #include "core/kernels/molecules/network/verbs.hpp"
 #include "core/kernels/molecules/positions.hpp"
