@@ -10,7 +10,7 @@ namespace holonomic {
 class Reference;
 
 // A molecule with a larger |D.D - a^2| / a^2 is not solved among the others, but here; one by sparse LDL^T only beyond
-// that of chains, for its kernels test the root themselves (LdlPositions::solve()). Of 5000 steps that turn small
+// that of chains, for its kernels test the root themselves (LdlPositions::rejected()). Of 5000 steps that turn small
 // molecules by up to 60 degrees 2 below it came to another root; ordinary steps leave it below 0.01. Linear chains bear
 // more: of 10,800 of 1 to 30 bonds in Brownian steps of up to 12 per cent of a bond Newton's method brought all to the
 // root of the path, and Brownian dynamics takes such steps all the time.

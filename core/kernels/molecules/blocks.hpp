@@ -2,11 +2,10 @@
 // for a cache, else one by one.
 #pragma once
 
+#include "core/kernels/arithmetic/width.hpp"
 #include "core/kernels/memory/prefetch.hpp"
-#include "core/kernels/molecules/armed_tree/linear.hpp"
-#include "core/kernels/molecules/flagged.hpp"
-#include "core/kernels/molecules/solve.hpp"
-#include "core/kernels/molecules/sparse_ldl/outputs.hpp"
+#include "core/kernels/molecules/elimination_plan.hpp"
+#include "core/kernels/molecules/way.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 
@@ -78,41 +77,5 @@ static inline void for_each_block(const MoleculeUnit &unit, double *scratch, Nex
         first += used;
     }
 }
-
-// Work whose blocks are solved by linear equations. Call: of forces, of velocities, or for given right-hand sides; each
-// has a solve_block(), which writes, and returns the lanes that plain arithmetic does not answer for.
-template <class Call>
-struct LinearWork {
-    const Call &call;
-    const EliminationPlan &elimination;
-    const Way way;
-    const bool packed;
-    Tally &tally;
-    const LongTeam *team;
-    NextMolecules &ahead;
-
-    template <class V>
-    void block(const MoleculeLane *lane, int used, bool masses_known, double *scratch) const {
-        if (way == Way::sparse_ldl) return block_by_ldl<V>(lane, used, masses_known, scratch);
-        if (way == Way::armed_tree) {
-            if (solve_armed(call, elimination, *lane, packed, team, scratch, tally)) return;
-            if (elimination.ldl) return block_by_ldl<V>(lane, used, false, scratch);
-        }
-        Memory<V> memory = {scratch};
-        Linear<V> z(elimination, lane, used, packed, call.box, call.r, memory);
-        const unsigned rest = solve_block(call, z, masses_known, ahead, tally);
-        if (__builtin_expect(rest != 0, 0)) solve_flagged(call, elimination, z.x.lane, rest, memory.next, tally);
-    }
-
-private:
-    template <class V>
-    __attribute__((noinline)) void block_by_ldl(const MoleculeLane *lane, int used, bool masses_known,
-                                                double *scratch) const {
-        Memory<V> memory = {scratch};
-        const LdlBlock<V> block = {elimination, lane, used, packed, masses_known, team, memory};
-        if (const unsigned rest = solve_by_ldl(call, block, tally))
-            solve_flagged(call, elimination, lane, rest, memory.next, tally);
-    }
-};
 
 }  // namespace holonomic::HOL_ISA::graph

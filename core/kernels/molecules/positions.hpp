@@ -3,7 +3,7 @@
 
 #include "core/kernels/molecules/blocks.hpp"
 #include "core/kernels/molecules/flagged.hpp"
-#include "core/kernels/molecules/iterate.hpp"
+#include "core/kernels/molecules/position_level.hpp"
 #include "core/kernels/molecules/ring/newton.hpp"
 #include "core/kernels/molecules/sparse_ldl/positions.hpp"
 #include "core/kernels/molecules/store.hpp"
@@ -72,110 +72,76 @@ HOL_NOINLINE V load_bonds(RingNewton<V> &newton, const PositionsCall &call, cons
     return largest;
 }
 
-// Moves the atoms of the lanes in `which`, and their velocities, but fixed ones. `right`: lanes that stay.
-template <class System, class V>
-HOL_INLINE void write_moves(const System &newton, const PositionsCall &call, const Atoms<V> &at, unsigned which,
-                            unsigned right) {
-    const EliminationPlan &s = newton.x.s;
-    unsigned char any_fixed = 0;
-    for (int32_t i = 0; i < s.n_atoms; ++i) any_fixed |= s.fixed[i];
-    const unsigned char *const fixed = any_fixed ? s.fixed : nullptr;
-    move_vectors(call, at, s.slot_of, s.n_atoms, newton.displacements(),
-                 Written<V>{which, fixed, nullptr, false, 0, right});
-}
-
 // A block of molecules at the position level. System: Newton or RingNewton.
 template <class System>
-struct PositionsBlock {
+struct PositionsBlock : PositionWay<typename System::Value> {
     typedef typename System::Value V;
-    const PositionsCall &call;
+    typedef PositionWay<V> Base;
+    using Base::call, Base::lane;
     const EliminationPlan &s;
-    const MoleculeLane *lane;  // [lanes]
     const Atoms<V> &at;
     System &newton;
-    Tally &tally;
-    V a_min, a_max, largest_coordinate;
 
-    // a^2 of all bonds, unless they are those of the block before.
-    void set_lengths(bool known) {
-        if (!known) {
-            V least = Width<V>::all(1e300), most = {};
-            for (int32_t k = 0; k < s.n_bonds; ++k) {
-                V a = {};
-                for (int i = 0; i < Width<V>::lanes; ++i) Width<V>::set(a, i, lane[i].length[s.bond_of[k]]);
-                least = min(a, least);
-                most = max(a, most);
-                const V a2 = a * a;
-                newton.x.row[k].a2 = a2;
-                newton.x.row[k].per_a2 = Width<V>::all(1) / a2;
-            }
-            newton.lengths[0] = least;
-            newton.lengths[1] = most;
+    // known: lengths are those of the block before.
+    PositionsBlock(const PositionsCall &c, const MoleculeLane *lanes, Tally &sum, const Atoms<V> &atoms, System &system,
+                   bool known)
+        : Base{c, lanes, sum}, s(system.x.s), at(atoms), newton(system) {
+        if (!known) set_lengths();
+    }
+
+    // a^2 of all bonds.
+    void set_lengths() {
+        V least = Width<V>::all(1e300), most = {};
+        for (int32_t k = 0; k < s.n_bonds; ++k) {
+            V a = {};
+            for (int i = 0; i < Width<V>::lanes; ++i) Width<V>::set(a, i, lane[i].length[s.bond_of[k]]);
+            least = min(a, least);
+            most = max(a, most);
+            const V a2 = a * a;
+            newton.x.row[k].a2 = a2;
+            newton.x.row[k].per_a2 = Width<V>::all(1) / a2;
         }
-        a_min = newton.lengths[0];
-        a_max = newton.lengths[1];
+        newton.lengths[0] = least;
+        newton.lengths[1] = most;
+    }
+    HOL_FORCED auto multipliers() const {
+        return [row = newton.x.row](int32_t k) HOL_FORCED -> V & { return row[k].tau; };
     }
 
-    void load_guess() {
-        const double factor = 2 * call.dt * call.dt;
-        for (int32_t k = 0; k < s.n_bonds; ++k)
-            for (int i = 0; i < Width<V>::lanes; ++i)
-                Width<V>::set(newton.x.row[k].tau, i, factor * call.lambda[lane[i].first_bond + s.bond_of[k]]);
+    Extent<V> load() {
+        const V largest = load_bonds(newton, call, at);
+        if (call.guess) this->load_guess(s.bond_of, 0, s.n_bonds, multipliers());
+        return {largest, newton.lengths[0], newton.lengths[1]};
     }
-
-    // Lanes in which an atom's displacement is the difference of pulls so large that their rounding is more than the
-    // coordinates'.
-    MaskOf<V> coarse_moves() const {
+    __attribute__((noinline)) V largest_pull(bool) const {
         V pull = {};
         for (int32_t k = 0; k < s.n_bonds; ++k) {
             int32_t from, to;
             ends_of(s, k, from, to);
             pull = max(max(newton.x.w[from], newton.x.w[to]) * abs(newton.x.row[k].tau), pull);
         }
-        return less(0.25 * (largest_coordinate + a_min), pull * a_max);
+        return pull;
     }
-
-    __attribute__((noinline)) void write_multipliers(unsigned which) const {
-        const V factor = Width<V>::all(0.5 / (call.dt * call.dt));
-        write_values<V>(s.bond_of, lane, call.lambda, which, 0, s.n_bonds,
-                        [&](int32_t k) HOL_FORCED { return mul_add(newton.x.row[k].tau, factor, V{}); });
-    }
-
-    void add_virial(unsigned which) const {
-        MoleculesVirial<V> virial;
-        for (int32_t k = 0; k < s.n_bonds; ++k) {
-            const auto &row = newton.x.row[k];
-            virial.add(row.b, row.tau * row.b);
-        }
-        virial.count(which, 1 / (call.dt * call.dt), tally);
-    }
-
-    void note_worst(unsigned which, V error) {
+    void note_worst(unsigned which, V error) const {
         note_worst_bond(
             s, which, error, lane, [&](int32_t k) { return newton.left_of(k); },
-            [&](const auto &each) { each(0, s.n_bonds); }, tally);
+            [&](const auto &each) { each(0, s.n_bonds); }, this->tally);
     }
-
-    // Finds multipliers, and writes nothing.
-    Solved<V> find(MaskOf<V> in_use) {
-        largest_coordinate = load_bonds(newton, call, at);
-        if (call.guess) load_guess();
-        const Limits<V> limits(call, largest_coordinate, a_min);
-        return iterate<V, false, System::by_length>(newton, limits, call, in_use);
+    __attribute__((noinline)) void write_multipliers(unsigned which) const {
+        this->write_lambda(s.bond_of, 0, s.n_bonds, which, multipliers());
     }
-
-    // Returns the lanes that need extended arithmetic; nothing of them has been written.
-    unsigned solve(MaskOf<V> in_use, NextMolecules &ahead) {
-        const Solved<V> out = find(in_use);
-        ahead.fetch();
-        const MaskOf<V> coarse = out.converged & coarse_moves();
-        const unsigned moved = bits(out.converged & ~coarse), good = moved | bits(out.untouched);
-        if (call.report) note_worst(good, out.error);
-        if (call.lambda) write_multipliers(good);
-        if (call.virial) add_virial(moved);
-        if (moved) write_moves(newton, call, at, moved, good & ~moved);
-        if (moved) count_moved(tally, __builtin_popcount(moved), out.solves);
-        return bits(in_use) & ~good;
+    void add_virial(unsigned which) const {
+        graph::add_virial<V>(
+            0, s.n_bonds, [&](int32_t k) HOL_FORCED { return newton.x.row[k].b; }, multipliers(), this->per_dt2(),
+            which, this->tally);
+    }
+    // Moves the atoms, and their velocities, but fixed ones.
+    HOL_FORCED void write_moves(unsigned which, unsigned right) const {
+        unsigned char any_fixed = 0;
+        for (int32_t i = 0; i < s.n_atoms; ++i) any_fixed |= s.fixed[i];
+        const unsigned char *const fixed = any_fixed ? s.fixed : nullptr;
+        move_vectors(call, at, s.slot_of, s.n_atoms, newton.displacements(),
+                     Written<V>{which, fixed, nullptr, false, 0, right});
     }
 };
 
@@ -189,34 +155,25 @@ struct PositionsWork {
 
     template <class V>
     void by_way(Way way, const MoleculeLane *lane, int used, bool known, double *scratch) const {
-        switch (way) {
-            case Way::sparse_ldl:
-                return by_ldl<V>(lane, used, known, scratch);
-            case Way::ring:
-                return solve<RingNewton<V>>(lane, used, known, scratch);
-            default:
-                return solve<Newton<V>>(lane, used, known, scratch);
-        }
+        Memory<V> memory = {scratch};
+        const unsigned rest = way == Way::sparse_ldl ? by_ldl<V>(lane, used, known, memory)
+                              : way == Way::ring     ? by_block<RingNewton<V>>(lane, used, known, memory)
+                                                     : by_block<Newton<V>>(lane, used, known, memory);
+        if (__builtin_expect(rest != 0, 0)) solve_flagged(call, elimination, lane, rest, memory.next, tally);
     }
 
     template <class V>
-    void by_ldl(const MoleculeLane *lane, int used, bool known, double *scratch) const {
-        Memory<V> memory = {scratch};
-        LdlPositions<V> list(call, elimination, lane, used, packed, known, team, memory, tally);
-        if (const unsigned rest = list.solve()) solve_flagged(call, elimination, lane, rest, memory.next, tally);
+    unsigned by_ldl(const MoleculeLane *lane, int used, bool known, Memory<V> &memory) const {
+        LdlPositions<V> x(call, elimination, lane, used, packed, known, team, memory, tally);
+        return solve_positions(x, Width<V>::first(used), [] {});
     }
-
-    template <class System>
-    void solve(const MoleculeLane *lane, int used, bool known, double *scratch) const {
-        typedef typename System::Value V;
-        Memory<V> memory = {scratch};
+    template <class System, class V>
+    unsigned by_block(const MoleculeLane *lane, int used, bool known, Memory<V> &memory) const {
         const Atoms<V> at(lane, used, packed);
         System newton(elimination, memory);
         if (!known) newton.set_masses(lane);
-        PositionsBlock<System> block = {call, elimination, lane, at, newton, tally, V{}, V{}, V{}};
-        block.set_lengths(known);
-        const unsigned rest = block.solve(Width<V>::first(used), ahead);
-        if (__builtin_expect(rest != 0, 0)) solve_flagged(call, elimination, lane, rest, memory.next, tally);
+        PositionsBlock<System> x(call, lane, tally, at, newton, known);
+        return solve_positions(x, Width<V>::first(used), [&] { ahead.fetch(); });
     }
 };
 

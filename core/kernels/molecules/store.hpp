@@ -31,7 +31,7 @@ HOL_INLINE Vector3<double> pull_on(const Molecules<double> &x, int32_t slot) {
 
 // Where the results of a linear solve go.
 struct Outputs {
-    const AtomArray *g;
+    const AtomArray *g;  // or nullptr
     double *lambda, *tension;
     bool add, virial;
 };
@@ -128,9 +128,10 @@ HOL_NOINLINE void write_bonds(const Molecules<V> &x, double factor, double *out,
 // Counts the virial of all bonds, in the lanes of `which`.
 template <class V>
 HOL_NOINLINE void add_pulls_to_virial(const Molecules<V> &x, unsigned which, Tally &tally) {
-    MoleculesVirial<V> virial;
-    for (int32_t k = 0; k < x.s.n_bonds; ++k) virial.add(x.row[k].d, x.row[k].t * x.row[k].d);
-    virial.count(which, 1, tally);
+    const BondRow<V> *const row = x.row;
+    add_virial<V>(
+        0, x.s.n_bonds, [=](int32_t k) HOL_FORCED { return row[k].d; }, [=](int32_t k) HOL_FORCED { return row[k].t; },
+        1, which, tally);
 }
 
 // Returns the lanes in which all multipliers are finite, and products of bonds can't have overflowed or underflowed.

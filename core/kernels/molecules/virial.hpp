@@ -18,6 +18,18 @@ struct MoleculesVirial : BondTensors<V> {
     }
 };
 
+// Counts factor times that of bonds k = first .. end - 1, of which d_of(k) and t_of(k) are known.
+template <class V, class BondOf, class MultiplierOf>
+HOL_INLINE void add_virial(int32_t first, int32_t end, const BondOf &d_of, const MultiplierOf &t_of, double factor,
+                           unsigned which, Tally &tally) {
+    MoleculesVirial<V> virial;
+    for (int32_t k = first; k < end; ++k) {
+        const Vector3<V> d = d_of(k);
+        virial.add(d, t_of(k) * d);
+    }
+    virial.count(which, factor, tally);
+}
+
 // Of molecules of n bonds.
 template <int n, class V>
 HOL_NOINLINE void add_bonds_virial(const Vector3<V> *d, const V *t, double factor, unsigned which, Tally &tally) {

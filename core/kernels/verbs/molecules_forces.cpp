@@ -1,7 +1,8 @@
 // Constraint forces of molecules that are no chains, and multipliers for given right-hand sides.
-#include "core/kernels/molecules/forces.hpp"
+#include "core/kernels/molecules/linear_blocks.hpp"
 #include "core/kernels/molecules/network/verbs.hpp"
 #include "core/kernels/molecules/star/linear.hpp"
+#include "core/kernels/molecules/triangle/blocks.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
 namespace holonomic::HOL_ISA {
@@ -16,8 +17,7 @@ HOL_NOINLINE void solve_triangles(const TriangleLinearVerb &verb, const Molecule
 
 static void forces_of_blocks(const ForcesCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
     if (unit.tree_batches) return batches_forces(call, unit, scratch, tally);
-    const bool packed =
-        call.r.packed && (!call.v.x || call.v.packed) && (!call.f.x || call.f.packed) && (!call.g.x || call.g.packed);
+    const bool packed = are_packed(call);
     const Way way = unit.elimination->way.forces;
     if (way == Way::network) return solve_networks(call, unit, packed, scratch, tally);
     if (way == Way::triangle) {
@@ -26,7 +26,7 @@ static void forces_of_blocks(const ForcesCall &call, const MoleculeUnit &unit, d
         return solve_triangles(TriangleLinearVerb(triangles, &call, nullptr, tally), unit, packed, reads_columns(call),
                                scratch);
     }
-    NextMolecules ahead({&call.r, &call.v, &call.f, &call.g}, call.lambda);
+    NextMolecules ahead = next_of(call);
     const LinearWork<ForcesCall> work = {call, *unit.elimination, way, packed, tally, unit.team, ahead};
     const StarForcesVerb stars = {call, tally};
     if (way == Way::star && (do_stars<3>(stars, work, unit, scratch) || do_stars<4>(stars, work, unit, scratch)))
@@ -42,7 +42,7 @@ void molecules_forces(const ForcesCall &call, const MoleculeUnit &unit, double *
 
 void molecules_solve(const SolveCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
     if (unit.tree_batches) return batches_solve(call, unit, scratch, tally);
-    const bool packed = call.r.packed && (!call.g.x || call.g.packed);
+    const bool packed = are_packed(call);
     const Way way = unit.elimination->way.given;
     if (way == Way::network) return solve_networks(call, unit, packed, scratch, tally);
     if (way == Way::triangle) {
@@ -51,7 +51,7 @@ void molecules_solve(const SolveCall &call, const MoleculeUnit &unit, double *sc
                                         call.lambda, call.tension, call.add, call.virial, call.box};
         return solve_triangles(TriangleLinearVerb(triangles, nullptr, &call, tally), unit, packed, false, scratch);
     }
-    NextMolecules ahead({&call.r, &call.g}, call.lambda);
+    NextMolecules ahead = next_of(call);
     const LinearWork<SolveCall> work = {call, *unit.elimination, way, packed, tally, unit.team, ahead};
     for_each_block(unit, scratch, ahead, work);
 }

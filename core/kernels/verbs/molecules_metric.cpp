@@ -1,6 +1,7 @@
 // Metric determinant and Fixman force of molecules that are no chains: of trees and bare rings in
 // lanes, of others one by one by the extended-precision solver.
 #include "core/kernels/extended/plan_of.hpp"
+#include "core/kernels/extended/verbs.hpp"
 #include "core/kernels/molecules/metric/ring.hpp"
 #include "core/kernels/molecules/metric/tree.hpp"
 #include "core/kernels/verbs/verbs.hpp"

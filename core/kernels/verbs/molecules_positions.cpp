@@ -1,4 +1,5 @@
 // Position level of molecules that are no chains.
+#include "core/kernels/molecules/armed_tree/linear.hpp"
 #include "core/kernels/molecules/linear.hpp"
 #include "core/kernels/molecules/network/verbs.hpp"
 #include "core/kernels/molecules/positions.hpp"
@@ -45,10 +46,13 @@ int64_t molecules_scratch_bytes(const EliminationPlan &s) {
 struct BlockPositionsWork : PositionsWork {
     template <class V>
     void block(const MoleculeLane *lane, int used, bool known, double *scratch) const {
-        const Ways &ways = elimination.way;
-        if (ways.positions != Way::paths) return by_way<V>(ways.positions, lane, used, known, scratch);
-        if (!path_positions(call, elimination, *lane, team, scratch, tally))
-            by_way<V>(ways.without_paths, lane, used, false, scratch);
+        Way way = elimination.way.positions;
+        if (way == Way::paths) {
+            if (path_positions(call, elimination, *lane, team, scratch, tally)) return;
+            way = elimination.way.without_paths;
+            known = false;
+        }
+        by_way<V>(way, lane, used, known, scratch);
     }
 };
 

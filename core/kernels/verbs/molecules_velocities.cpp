@@ -1,7 +1,8 @@
 // Velocity level of molecules that are no chains.
+#include "core/kernels/molecules/linear_blocks.hpp"
 #include "core/kernels/molecules/network/verbs.hpp"
 #include "core/kernels/molecules/star/linear.hpp"
-#include "core/kernels/molecules/velocities.hpp"
+#include "core/kernels/molecules/triangle/blocks.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
 namespace holonomic::HOL_ISA {
@@ -10,12 +11,12 @@ using namespace graph;
 
 static void velocities_of_blocks(const VelocitiesCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
     if (unit.tree_batches) return batches_velocities(call, unit, scratch, tally);
-    const bool packed = call.r.packed && call.v.packed;
+    const bool packed = are_packed(call);
     const Way way = unit.elimination->way.forces;
     if (way == Way::network) return solve_networks(call, unit, packed, scratch, tally);
     if (way == Way::triangle)
         return for_each_triangle(TriangleVelocitiesVerb(call, tally), unit, packed, scratch, reads_columns(call));
-    NextMolecules ahead({&call.r, &call.v}, call.lambda);
+    NextMolecules ahead = next_of(call);
     const LinearWork<VelocitiesCall> work = {call, *unit.elimination, way, packed, tally, unit.team, ahead};
     const StarVelocitiesVerb stars = {call, tally};
     if (way == Way::star && (do_stars<3>(stars, work, unit, scratch) || do_stars<4>(stars, work, unit, scratch)))

@@ -4,8 +4,7 @@
 #pragma once
 
 #include "core/kernels/molecules/armed_tree/arm_store.hpp"
-#include "core/kernels/molecules/load.hpp"
-#include "core/kernels/molecules/store.hpp"
+#include "core/kernels/molecules/linear_level.hpp"
 #include "core/kernels/molecules/tree/flagged_atom.hpp"
 #include "core/kernels/molecules/tree/joint.hpp"
 
@@ -40,41 +39,25 @@ struct ArmedTree {
         arms = take_arms(s, scratch, memory);
     }
 
+    // The way of linear_level.hpp.
+    unsigned in_use() const { return 1; }
+    unsigned solve() { return read_and_solve(true) && !(solved_twice(x.in) && any_overcorrected()) ? 1 : 0; }
+    void write(const Outputs &out, unsigned, Tally &tally) const { write_all(out, false, tally); }
+    // From the beginning, as a long chain is. The matrix is the same both times. The second time the rates are those
+    // that the rounded velocities leave.
+    void project(const Outputs &out, bool twice, unsigned, Tally &tally) {
+        write_all(out, true, tally);
+        if (twice && read_and_solve(false)) write_all({out.g, nullptr, nullptr, true, false}, true, tally);
+    }
+
+private:
     // Reads the tree and solves. Returns whether plain arithmetic answers for it; unless `look`, whether results are
     // finite.
-    bool solve(bool look);
+    bool read_and_solve(bool look);
     // Whether an atom is overcorrected by the solution (tree/flagged_atom.hpp).
     bool any_overcorrected() const;
     // weighted: v += w G, with v in place of G.
-    void write(const Outputs &, bool weighted, Tally &) const;
+    void write_all(const Outputs &, bool weighted, Tally &) const;
 };
-
-static inline bool solve_armed(const ForcesCall &call, const EliminationPlan &s, const MoleculeLane &lane, bool packed,
-                               const LongTeam *team, double *scratch, Tally &tally) {
-    ArmedTree z(s, lane, packed, call.box, call.r, {&call.v, &call.f, nullptr, false},
-                (call.v.x ? squares : 0) | (call.f.x ? pulls : 0), team, scratch);
-    if (!z.solve(true)) return false;
-    z.write({&call.g, call.lambda, call.tension, call.add, call.virial}, false, tally);
-    return true;
-}
-
-// Solved, and moved, twice from the beginning, as a long chain is. The matrix is the same both times. The second time
-// the rates are those that the rounded velocities leave.
-static inline bool solve_armed(const VelocitiesCall &call, const EliminationPlan &s, const MoleculeLane &lane,
-                               bool packed, const LongTeam *team, double *scratch, Tally &tally) {
-    ArmedTree z(s, lane, packed, call.box, call.r, {&call.v, nullptr, nullptr, true, call.strain}, rates, team,
-                scratch);
-    const bool twice = !call.v.is_float;
-    if (!z.solve(true) || (twice && z.any_overcorrected())) return false;
-    z.write({&call.v, call.lambda, nullptr, true, call.virial}, true, tally);
-    if (twice && z.solve(false)) z.write({&call.v, nullptr, nullptr, true, false}, true, tally);
-    return true;
-}
-
-// Given right-hand sides have no use for arms.
-static inline bool solve_armed(const SolveCall &, const EliminationPlan &, const MoleculeLane &, bool, const LongTeam *,
-                               double *, Tally &) {
-    return false;
-}
 
 }  // namespace holonomic::HOL_ISA::graph

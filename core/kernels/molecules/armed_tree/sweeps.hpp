@@ -30,7 +30,7 @@ HOL_NOINLINE void down_armed(ArmedTree &z, bool look) {
     }
 }
 
-bool ArmedTree::solve(bool look) {
+bool ArmedTree::read_and_solve(bool look) {
     for (int32_t slot = x.s.n_tree; slot < x.s.n_atoms; ++slot) x.w[slot] = x.lane[0].w[x.s.atom_of[slot]];
     eliminate_arms(*this);
     bool again;
@@ -77,7 +77,7 @@ bool ArmedTree::any_overcorrected() const {
     return false;
 }
 
-void ArmedTree::write(const Outputs &out, bool weighted, Tally &tally) const {
+void ArmedTree::write_all(const Outputs &out, bool weighted, Tally &tally) const {
     MoleculesVirial<double> virial;
     for (int32_t i = 0; i <= x.s.n_arms; ++i) write_range(x, weighted, x.s.stretch[i], out, virial);
     write_range(x, weighted, {x.s.n_tree, x.s.n_atoms, 0, 0, -1}, out, virial);

@@ -6,7 +6,10 @@
 
 #include "core/kernels/arithmetic/log_sum.hpp"
 #include "core/kernels/arithmetic/thresholds.hpp"
+#include "core/kernels/molecules/atoms/vectors.hpp"
 #include "core/kernels/molecules/blocks.hpp"
+#include "core/kernels/molecules/molecules.hpp"
+#include "core/kernels/molecules/scratch.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 

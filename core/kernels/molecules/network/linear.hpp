@@ -2,10 +2,10 @@
 // little, all residuals are found in twice the precision and solved for, until that changes nothing.
 #pragma once
 
+#include "core/kernels/molecules/linear_level.hpp"
 #include "core/kernels/molecules/network/proof.hpp"
 #include "core/kernels/molecules/network/residuals.hpp"
 #include "core/kernels/molecules/refine.hpp"
-#include "core/kernels/molecules/virial.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 
@@ -17,7 +17,7 @@ struct NetLinear : NetProof {
               const AtomArray &positions, const Inputs &inputs, int sides, Memory<double> memory)
         : NetProof(plan, l, packed, team, b, positions, inputs, sides, memory) {}
 
-    __attribute__((noinline)) bool solve() const {
+    __attribute__((noinline)) bool find_and_prove() const {
         if (!find()) return false;
         if (!unproven) {
             if (!flagged || correct()) return true;
@@ -67,6 +67,21 @@ struct NetLinear : NetProof {
         factor.find_pulls_of_rest(t, G);
         return true;
     }
+    // The way of linear_level.hpp.
+    unsigned in_use() const { return 1; }
+    unsigned solve() const { return find_and_prove() ? 1 : 0; }
+    void write(const Outputs &out, unsigned which, Tally &tally) const {
+        net.for_rest_and_parts([&](const NetPart &part) { write_bonds_and_pulls(*this, out, which, part); });
+        if (out.virial)
+            add_virial<double>(
+                0, s.n_bonds, [&](int32_t k) { return d.get<double>(k); }, [&](int32_t k) { return t[k]; }, 1, which,
+                tally);
+    }
+    void project(const Outputs &out, bool twice, unsigned which, Tally &tally) const {
+        write_all_but_atoms(*this, out, which, tally);
+        write_velocities(*out.g, twice);
+    }
+
     // Velocities v + w G; with `again` once more projected: what their rounding leaves.
     __attribute__((noinline)) void write_velocities(const AtomArray &to, bool again) const {
         const bool solved = !again || project_again();
@@ -129,25 +144,18 @@ struct NetLinear : NetProof {
         });
     }
 
-    void write_bonds(const NetPart &part, double scale, bool sizes, double *out) const {
+    template <bool with_length>
+    void write_bonds(const NetPart &part, double scale, double *out, unsigned) const {
         for (int32_t k = part.first_place; k < part.end_place; ++k) {
             const Vector3<double> bond = d.get<double>(k);
-            out[net.number_of_bond(k)] = mul_add(t[k], sizes ? sqrt(dot(bond, bond)) : scale, 0.0);
+            out[net.number_of_bond(k)] = mul_add(t[k], with_length ? sqrt(dot(bond, bond)) : scale, 0.0);
         }
     }
-    __attribute__((noinline)) void write_pulls(const NetPart &part, const AtomArray &to, bool add) const {
+    __attribute__((noinline)) void write_pulls(const NetPart &part, const AtomArray &to, bool add, unsigned) const {
         const auto write = [&](auto width, int32_t site, const auto &pull)
                                HOL_FORCED { net.write_at<decltype(width)>(to, site, net.lane.shared, add, pull); };
         if (net.is_rest(part)) return for_pulls_of_rest(write);
         net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED { for_pulls(width, g, write); });
-    }
-    void add_virial(Tally &tally) const {
-        MoleculesVirial<double> virial;
-        for (int32_t k = 0; k < s.n_bonds; ++k) {
-            const Vector3<double> bond = d.get<double>(k);
-            virial.add(bond, t[k] * bond);
-        }
-        virial.count(1, 1, tally);
     }
 };
 

@@ -1,27 +1,23 @@
-// Position level of a network, a gel or a lattice: one molecule of strands that meet at nodes (plan.hpp). Reads
-// bonds strand by strand in lanes, runs iterate() on newton.hpp (theory (15)-(17), (58)), and writes once all
-// lengths are right.
+// Position level of a network, a gel or a lattice: one molecule of strands that meet at nodes (plan.hpp). A way of
+// position_level.hpp that reads bonds strand by strand in lanes; newton.hpp has its equations (theory (58)).
 #pragma once
 
 #include "core/kernels/molecules/network/newton.hpp"
+#include "core/kernels/molecules/position_level.hpp"
 #include "core/kernels/molecules/twice.hpp"
-#include "core/kernels/molecules/virial.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 
-struct NetPositions {
-    const PositionsCall &call;
+struct NetPositions : PositionWay<double> {
     const unsigned char *fixed;  // by local atom
     NetNewton newton;
-    Tally &tally;
-    double a_min = 1e300, a_max = 0, largest_coordinate = 0;
     double *largest;  // [n_shares + 1] of parts: coordinates, then squares of lengths, then their inverses
 
     static int64_t values(const NetworkPlan &s) { return NetNewton::values(s) + 3 * in_fours(s.n_shares + 1); }
 
-    NetPositions(const PositionsCall &c, const NetworkPlan &plan, const unsigned char *held, const MoleculeLane &lane,
+    NetPositions(const PositionsCall &c, const NetworkPlan &plan, const unsigned char *held, const MoleculeLane &l,
                  bool packed, const LongTeam *team, Memory<double> memory, Tally &sum)
-        : call(c), fixed(held), newton(plan, lane, packed, team, memory), tally(sum),
+        : PositionWay<double>{c, &l, sum}, fixed(held), newton(plan, l, packed, team, memory),
           largest(memory.next + NetNewton::values(plan)) {}
 
     // The largest of what is read in lanes, and of what is left of them.
@@ -61,7 +57,7 @@ struct NetPositions {
         store_any(newton.a2 + place, a2);
         store_any(newton.per_a2 + place, Width<V>::all(1) / a2);
         store_any(newton.tau + place,
-                  call.guess ? Width<V>::all(2 * call.dt * call.dt) * net.of_bonds<V>(call.lambda, place) : V{});
+                  call.guess ? Width<V>::all(tau_of_lambda()) * net.of_bonds<V>(call.lambda, place) : V{});
         return newton.measure<true>(place, bond);
     }
     // Reference positions stand where moves will.
@@ -114,15 +110,13 @@ struct NetPositions {
         keep(part, coordinate);
         newton.factor.factorize(part, newton.D, newton.t);  // with a guess, too: moves need what this keeps of the ends
     }
-    __attribute__((noinline)) void load() {
+    __attribute__((noinline)) Extent<double> load() {
         const NetworkPlan &s = newton.s;
         read_rest();
         newton.net.for_parts([&](const NetPart &part) { read_strands(part); });
         newton.opening = newton.worst_of_all();
         const int32_t n = s.n_shares + 1;
-        largest_coordinate = largest_of(largest, n);
-        a_max = sqrt(largest_of(largest + n, n));
-        a_min = 1 / sqrt(largest_of(largest + 2 * n, n));
+        return {largest_of(largest, n), 1 / sqrt(largest_of(largest + 2 * n, n)), sqrt(largest_of(largest + n, n))};
     }
     static double largest_of(const double *x, int32_t n) {
         vec most = {};
@@ -134,19 +128,36 @@ struct NetPositions {
         return all;
     }
 
-    // Whether a displacement is the difference of pulls whose rounding is more than the coordinates'.
-    bool coarse_moves() const {
+    double largest_pull(bool exact) const {
         const NetworkPlan &s = newton.s;
-        const double most = 0.25 * (largest_coordinate + a_min);
-        double pull = largest_of(newton.net.w, s.n_atoms) * largest_of(newton.tau, s.n_bonds);
-        if (pull * a_max <= most) return false;
-        pull = 0;
+        if (!exact) return largest_of(newton.net.w, s.n_atoms) * largest_of(newton.tau, s.n_bonds);
+        double pull = 0;
         for (int32_t k = 0; k < s.n_bonds; ++k)
             pull = max(max(newton.net.w[s.from[k]], newton.net.w[s.to[k]]) * abs(newton.tau[k]), pull);
-        return most < pull * a_max;
+        return pull;
     }
-
-    void write_atoms() const {
+    // What the last solve has left to be done comes first.
+    Flag rejected(Flag converged) {
+        if (converged.set) newton.correct();
+        return Flag{newton.failed};
+    }
+    void note_worst(unsigned which, double error) const {
+        note_worst_bond(
+            newton.s, which, error, lane, [&](int32_t k) { return newton.error_of(k); },
+            [&](const auto &each) { newton.for_worst_parts(error, each); }, tally);
+    }
+    void write_multipliers(unsigned) const {
+        newton.net.for_ranges(0, newton.s.n_bonds, [&](int32_t first, int32_t end) {
+            for (int32_t k = first; k < end; ++k)
+                call.lambda[newton.net.number_of_bond(k)] = mul_add(newton.tau[k], lambda_of_tau(), 0.0);
+        });
+    }
+    void add_virial(unsigned which) const {
+        graph::add_virial<double>(
+            0, newton.s.n_bonds, [&](int32_t k) { return newton.b.get<double>(k); },
+            [&](int32_t k) { return newton.tau[k]; }, per_dt2(), which, tally);
+    }
+    void write_moves(unsigned, unsigned) const {
         const double per_dt = 1 / call.dt;
         const auto write = [&](auto width, int32_t i, const auto &move) HOL_FORCED {
             typedef decltype(width) V;
@@ -158,41 +169,6 @@ struct NetPositions {
             write(width, i, newton.moves.get<decltype(width)>(i));
         });
         newton.for_all_strands([&](auto width, const NetStrands &g) HOL_FORCED { newton.for_moves(width, g, write); });
-    }
-    void write_results(bool moved) {
-        const NetworkPlan &s = newton.s;
-        const double per_dt2 = 1 / (call.dt * call.dt);
-        newton.net.for_ranges(0, call.lambda ? s.n_bonds : 0, [&](int32_t first, int32_t end) {
-            for (int32_t k = first; k < end; ++k)
-                call.lambda[newton.net.number_of_bond(k)] = mul_add(newton.tau[k], 0.5 * per_dt2, 0.0);
-        });
-        if (!moved) return;
-        if (call.virial) {
-            MoleculesVirial<double> virial;
-            for (int32_t k = 0; k < s.n_bonds; ++k) {
-                const Vector3<double> bond = newton.b.get<double>(k);
-                virial.add(bond, newton.tau[k] * bond);
-            }
-            virial.count(1, per_dt2, tally);
-        }
-        write_atoms();
-    }
-
-    // Whether it is done; if not, nothing has been written.
-    bool solve() {
-        load();
-        const Limits<double> limits(call, largest_coordinate, a_min);
-        const Solved<double> out = iterate<double, false, true>(newton, limits, call, Flag{true});
-        if (out.converged.set) newton.correct();
-        const bool moved = out.converged.set && !coarse_moves() && !newton.failed;
-        if (!moved && !out.untouched.set) return false;
-        if (call.report)
-            note_worst_bond(
-                newton.s, 1, out.error, &newton.net.lane, [&](int32_t k) { return newton.error_of(k); },
-                [&](const auto &each) { newton.for_worst_parts(out.error, each); }, tally);
-        write_results(moved);
-        if (moved) count_moved(tally, 1, out.solves);
-        return true;
     }
 };
 

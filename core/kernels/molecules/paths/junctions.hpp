@@ -139,11 +139,10 @@ static inline WindowResult solve_junctions(const PathsWork &x, const Junctions &
     Newton<vec> newton(s, memory);
     newton.set_masses(lane);
     const mask all = first_lanes(junctions.used);
-    PositionsBlock<Newton<vec>> block = {x.strict, s, lane, at, newton, part, vec{}, vec{}, vec{}};
-    block.set_lengths(false);
-    const Solved<vec> out = block.find(all);
+    PositionsBlock<Newton<vec>> block(x.strict, lane, part, at, newton, false);
+    const Solved<vec> out = find_multipliers(block, all);
     const bool untouched = !any(all & ~out.untouched);
-    if (!untouched && any(all & (~out.converged | block.coarse_moves()))) return window_failed;
+    if (!untouched && any(all & ~out.converged)) return window_failed;
     if (x.call.report)
         for_bonds_of_junctions(
             x.plan, junctions, s, reach, untouched ? PathPlan::bonds_of_end : 1,

@@ -19,7 +19,6 @@ HOL_INLINE void put_where(MaskOf<V> which, V &to, V value) {
 template <class V>
 struct RingNewton {
     typedef V Value;
-    static constexpr bool by_length = true;
     // What is shared with the last bond.
     struct Closure {
         V l, c;

@@ -1,10 +1,9 @@
-// Forces, given right-hand sides and velocities of molecules by sparse LDL^T: one (V = double), or W of one shape in
-// lanes. Each returns the lanes that are flagged, of which nothing has been written.
+// The linear levels of molecules by sparse LDL^T: one (V = double), or W of one shape in lanes.
 #pragma once
 
+#include "core/kernels/molecules/linear_level.hpp"
 #include "core/kernels/molecules/solve.hpp"
 #include "core/kernels/molecules/sparse_ldl/rates.hpp"
-#include "core/kernels/molecules/virial.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 
@@ -22,82 +21,55 @@ struct LdlBlock {
     }
 };
 
-// Write value(column) of the bonds, and rows of the atoms, in the lanes of `which`.
-template <class V, class Value>
-HOL_INLINE void write_bonds(const LdlLinear<V> &x, double *out, unsigned which, const Value &value) {
-    x.up([&](const LdlLinear<V> &, const Subtree &subtree) HOL_FORCED {
-        for_tiles_up(x.s, subtree, [&](const Tile &tile) HOL_FORCED {
-            write_values<V>(x.s.bond_of, x.lane, out, which, tile.first, tile.end, value);
-        });
-    });
-}
+// The way of linear_level.hpp.
 template <class V>
-static inline void write_multipliers(const LdlLinear<V> &x, double *out, unsigned which) {
-    write_bonds(x, out, which, [&](int32_t k) HOL_FORCED { return mul_add(Width<V>::all(0.5), x.t[k], V{}); });
-}
-template <class V>
-static inline void write_tensions(const LdlLinear<V> &x, double *out, unsigned which) {
-    write_bonds(x, out, which, [&](int32_t k) HOL_FORCED { return mul_add(x.t[k], x.size[k], V{}); });
-}
-template <class V>
-static inline void write_atoms(const LdlLinear<V> &x, const AtomArray &to, const Rows<V> &from, bool add,
-                               unsigned which) {
-    for_atoms(x.s, x.team, [&](int32_t first, int32_t end) HOL_FORCED {
-        write_vectors(to, x.at.from(first), x.s.place_of + first, end - first, from.slots(),
-                      Written<V>{which, nullptr, x.lane, add, first});
-    });
-}
-template <class V>
-static inline void add_virial(const LdlLinear<V> &x, unsigned which, Tally &tally) {
-    share_out(x.team, x.s.n_tiles, tally, [&](int32_t i, Tally &part) HOL_FORCED {
-        const Tile &tile = x.s.tile[i];
-        MoleculesVirial<V> virial;
-        for (int32_t k = tile.first; k < tile.end; ++k) {
-            const Vector3<V> bond = vector_of(x.d_of(tile)[k - tile.first]);
-            virial.add(bond, x.t[k] * bond);
-        }
-        virial.count(which, 1, part);
-    });
-}
+struct LdlWay {
+    const LdlLinear<V> &x;
 
-// Call: of forces, of given right-hand sides, or with kept factors. `good`: the lanes that are solved.
+    unsigned in_use() const { return bits(x.in_use()); }
+    unsigned solve() const { return solve_and_refine(x); }
+    template <bool with_length>
+    void write_bonds(double factor, double *out, unsigned which) const {
+        x.up([&](const LdlLinear<V> &, const Subtree &subtree) HOL_FORCED {
+            for_tiles_up(x.s, subtree, [&](const Tile &tile) HOL_FORCED {
+                write_values<V>(x.s.bond_of, x.lane, out, which, tile.first, tile.end, [&](int32_t k) HOL_FORCED {
+                    return mul_add(x.t[k], with_length ? x.size[k] : Width<V>::all(factor), V{});
+                });
+            });
+        });
+    }
+    void write_pulls(const AtomArray &g, bool add, unsigned which) const { write_atoms(g, x.pull, add, which); }
+    void write_atoms(const AtomArray &to, const Rows<V> &from, bool add, unsigned which) const {
+        for_atoms(x.s, x.team, [&](int32_t first, int32_t end) HOL_FORCED {
+            write_vectors(to, x.at.from(first), x.s.place_of + first, end - first, from.slots(),
+                          Written<V>{which, nullptr, x.lane, add, first});
+        });
+    }
+    void write(const Outputs &out, unsigned which, Tally &tally) const {
+        if (out.virial)
+            share_out(x.team, x.s.n_tiles, tally, [&](int32_t i, Tally &part) HOL_FORCED {
+                const Tile &tile = x.s.tile[i];
+                const Rows<V> d = x.d.from(tile.first_row - tile.first);
+                add_virial<V>(
+                    tile.first, tile.end, [&](int32_t k) HOL_FORCED { return vector_of(d[k]); },
+                    [&](int32_t k) HOL_FORCED { return x.t[k]; }, 1, which, part);
+            });
+        write_bonds_and_pulls(*this, out, which);
+    }
+    void project(const Outputs &out, bool twice, unsigned which, Tally &tally) const {
+        write_all_but_atoms(*this, out, which, tally);
+        // Nothing reads v any more, so that tiles of one molecule write it as they come.
+        const bool tile_by_tile = LdlLinear<V>::step == 4 && twice && !x.lane[0].shared;
+        if (twice) take_rates(x, tile_by_tile ? out.g : nullptr);
+        if (!tile_by_tile) write_atoms(*out.g, x.a, false, which);
+    }
+};
+
+// With kept factors. `good`: the lanes that are solved.
 template <class V, class Call>
 static inline unsigned write_by_ldl(const Call &call, const LdlLinear<V> &x, unsigned good, Tally &tally) {
-    if (good && call.lambda) write_multipliers(x, call.lambda, good);
-    if (good && call.tension) write_tensions(x, call.tension, good);
-    if (good && call.virial) add_virial(x, good, tally);
-    if (good && call.g.x) write_atoms(x, call.g, x.pull, call.add, good);
-    return bits(x.in_use()) & ~good;
-}
-
-template <class V>
-static inline unsigned solve_by_ldl(const ForcesCall &call, const LdlBlock<V> &block, Tally &tally) {
-    const Inputs in = {&call.v, &call.f, nullptr, false};
-    const int terms = (call.v.x ? squares : 0) | (call.f.x ? pulls : 0);
-    const LdlLinear<V> x = block.linear(call.box, call.r, in, terms);
-    return write_by_ldl(call, x, solve_and_refine(x), tally);
-}
-
-template <class V>
-static inline unsigned solve_by_ldl(const SolveCall &call, const LdlBlock<V> &block, Tally &tally) {
-    const Inputs in = {nullptr, nullptr, call.rhs, false};
-    const LdlLinear<V> x = block.linear(call.box, call.r, in, given);
-    return write_by_ldl(call, x, solve_and_refine(x), tally);
-}
-
-template <class V>
-static inline unsigned solve_by_ldl(const VelocitiesCall &call, const LdlBlock<V> &block, Tally &tally) {
-    const Inputs in = {&call.v, nullptr, nullptr, true, call.strain};
-    const LdlLinear<V> x = block.linear(call.box, call.r, in, rates);
-    const unsigned good = solve_and_refine(x);
-    if (!good) return bits(x.in_use());
-    if (call.lambda) write_multipliers(x, call.lambda, good);
-    if (call.virial) add_virial(x, good, tally);
-    // Nothing reads v any more, so that tiles of one molecule write it as they come.
-    const bool tile_by_tile = LdlLinear<V>::step == 4 && x.with_rates && !x.lane[0].shared;
-    if (x.with_rates) take_rates(x, tile_by_tile ? &call.v : nullptr);
-    if (!tile_by_tile) write_atoms(x, call.v, x.a, false, good);
-    return bits(x.in_use()) & ~good;
+    const LdlWay<V> way = {x};
+    return write_solution(call, way, good, tally);
 }
 
 }  // namespace holonomic::HOL_ISA::graph

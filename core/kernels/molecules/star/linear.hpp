@@ -259,7 +259,7 @@ struct StarForcesVerb {
     }
 };
 
-// A second solve for the rates that the first leaves, as velocities.hpp has it.
+// A second solve for the rates that the first leaves, as linear_level.hpp has it.
 struct StarVelocitiesVerb {
     static constexpr bool in_steps = false;
     template <int N, class V>

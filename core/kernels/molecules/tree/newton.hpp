@@ -11,7 +11,6 @@ namespace holonomic::HOL_ISA::graph {
 template <class V>
 struct Newton {
     typedef V Value;
-    static constexpr bool by_length = true;
     NewtonSystem<V> x;
     V *kept;              // factors, while new ones are made for some lanes
     V *lengths;           // least and largest

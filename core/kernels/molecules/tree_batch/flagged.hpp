@@ -9,7 +9,7 @@ namespace holonomic::HOL_ISA::graph {
 
 // Of a bond in one lane.
 inline BondRow<double> one_of(const BondRow<vec> &row, int i) {
-    return {{row.d.x[i], row.d.y[i], row.d.z[i]}, row.q[i], row.E[i], row.t[i], row.l[i], row.r[i]};
+    return {one_of(row.d, i), row.q[i], row.E[i], row.t[i], row.l[i], row.r[i]};
 }
 
 // Of a piece, or of the top. An atom's number in `cancelling` is that of its step times that of lanes, plus its lane.

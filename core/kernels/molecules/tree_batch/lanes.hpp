@@ -9,6 +9,8 @@
 
 namespace holonomic::HOL_ISA::graph {
 
+inline Vector3<double> one_of(const vec3 &a, int i) { return {a.x[i], a.y[i], a.z[i]}; }
+
 // One double of each lane.
 HOL_INLINE vec numbers_at(const double *const *p, int64_t offset) {
 #if HOL_LANES == 4

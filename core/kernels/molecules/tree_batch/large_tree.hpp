@@ -74,8 +74,21 @@ struct LargeTree {
         return true;
     }
 
+    // The way of linear_level.hpp.
+    unsigned in_use() const { return 1; }
+    unsigned solve() const { return load_and_solve() && !(solved_twice(z.in) && any_overcorrected()) ? 1 : 0; }
+    void write(const Outputs &out, unsigned which, Tally &tally) const {
+        for_ranges([&](const Range &range) { write_bonds_and_pulls(z, out, all_lanes, range); });
+        if (out.virial) add_virial(which, tally);
+    }
+    void project(const Outputs &out, bool twice, unsigned which, Tally &tally) const {
+        write_all_but_atoms(*this, out, which, tally);
+        project(twice);
+        for_ranges([&](const Range &range) { z.write_velocities(range, *out.g, all_lanes); });
+    }
+
     // Returns whether plain arithmetic answers for the tree.
-    bool solve() const {
+    bool load_and_solve() const {
         do {
             load(top());
             for_pieces([&](int32_t p) {
@@ -96,13 +109,10 @@ struct LargeTree {
         write(z.piece(top()));
     }
     // In the order of the slots, whatever lanes there are.
-    void add_virial(Tally &tally) const {
-        MoleculesVirial<double> virial;
-        for (int32_t slot = 0; slot < z.f.elimination[0]->n_tree; ++slot) {
-            const BondRow<double> bond = bond_at(z.f.element[slot]);
-            virial.add(bond.d, bond.t * bond.d);
-        }
-        virial.count(1, 1, tally);
+    void add_virial(unsigned which, Tally &tally) const {
+        graph::add_virial<double>(
+            0, z.f.elimination[0]->n_tree, [&](int32_t slot) { return bond_at(z.f.element[slot]).d; },
+            [&](int32_t slot) { return bond_at(z.f.element[slot]).t; }, 1, which, tally);
     }
     BondRow<double> bond_at(int32_t element) const { return one_of(z.row[element / W], element % W); }
 

@@ -124,53 +124,38 @@ struct LargeTreeNewton {
     }
 };
 
-struct LargeTreePositions {
-    typedef BatchTrees::Range Range;
-    LargeTreeNewton &newton;
+struct LargeTreePositions : PositionWay<double> {
+    LargeTreeNewton newton;
     const BatchPositions &lanes;
-    Tally &tally;
 
-    // Returns whether it is done; if not, nothing has been written.
-    bool solve(int64_t molecule) const {
-        const PositionsCall &call = lanes.call;
-        BatchNewton &x = newton.x;
+    Extent<double> load() {
         newton.load(call);
-        if (call.guess) lanes.load_guess(x.all());
-        double largest = 0, a_min = newton.found[0].least, a_max = 0;
-        for (int32_t p = 0; p <= newton.top(); ++p) {
-            largest = max(newton.found[p].coordinate, largest);
-            a_min = min(newton.found[p].least, a_min);
-            a_max = max(newton.found[p].most, a_max);
-        }
-        const Limits<double> limits(call, largest, a_min);
-        const Solved<double> out = iterate<double, false, true>(newton, limits, call, Flag{true});
-        const bool moved =
-            out.converged.set && !(0.25 * (largest + a_min) < largest_of(lanes.largest_pull(x.all())) * a_max);
-        if (!moved && !out.untouched.set) return false;
-        if (call.report && take_worst(tally, out.error, molecule)) tally.worst_bond = lanes.worst_bond(all_lanes);
-        if (moved && !newton.displaced) newton.displace<false>();
-        newton.up([](int32_t) {}, [&](int32_t p) { write(x.piece(p), moved); });
-        if (!moved) return true;
-        if (call.virial) add_virial();
-        count_moved(tally, 1, out.solves);
-        return true;
+        if (call.guess) lanes.load_guess(newton.x.all());
+        Extent<double> extent = {0, newton.found[0].least, 0};
+        for (int32_t p = 0; p <= newton.top(); ++p)
+            extent = {max(newton.found[p].coordinate, extent.coordinate), min(newton.found[p].least, extent.a_min),
+                      max(newton.found[p].most, extent.a_max)};
+        return extent;
     }
-    void write(const Range &range, bool moved) const {
-        const PositionsCall &call = lanes.call;
-        if (call.lambda) lanes.write_multipliers(range, all_lanes);
-        if (moved) lanes.write_moves(range, all_lanes);
+    double largest_pull(bool exact) const { return largest_of(lanes.largest_pull(exact)); }
+    void note_worst(unsigned which, double error) const {
+        if (worst_lane(which, error, lane, tally) >= 0) tally.worst_bond = lanes.worst_bond(all_lanes);
+    }
+    void write_multipliers(unsigned) const {
+        newton.up([](int32_t) {}, [&](int32_t p) { lanes.write_multipliers(newton.x.piece(p), all_lanes); });
     }
     // In the order of the slots, whatever lanes there are.
-    void add_virial() const {
+    void add_virial(unsigned which) const {
         const BatchNewton &x = newton.x;
-        MoleculesVirial<double> virial;
-        for (int32_t slot = 0; slot < x.f.elimination[0]->n_tree; ++slot) {
-            const BatchRow &row = x.row[x.f.element[slot] / W];
-            const int i = x.f.element[slot] % W;
-            const Vector3<double> b = {row.b.x[i], row.b.y[i], row.b.z[i]};
-            virial.add(b, row.tau[i] * b);
-        }
-        virial.count(1, 1 / (lanes.call.dt * lanes.call.dt), tally);
+        const auto element = [&](int32_t slot) { return x.f.element[slot]; };
+        graph::add_virial<double>(
+            0, x.f.elimination[0]->n_tree,
+            [&](int32_t slot) { return one_of(x.row[element(slot) / W].b, element(slot) % W); },
+            [&](int32_t slot) { return x.row[element(slot) / W].tau[element(slot) % W]; }, per_dt2(), which, tally);
+    }
+    void write_moves(unsigned, unsigned) {
+        if (!newton.displaced) newton.displace<false>();
+        newton.up([](int32_t) {}, [&](int32_t p) { lanes.write_moves(newton.x.piece(p), all_lanes); });
     }
 };
 

@@ -4,9 +4,8 @@
 
 #include <stddef.h>
 
-#include "core/kernels/molecules/load.hpp"
+#include "core/kernels/molecules/linear_level.hpp"
 #include "core/kernels/molecules/tree_batch/lanes.hpp"
-#include "core/kernels/molecules/virial.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 
@@ -178,9 +177,9 @@ struct BatchLinear : BatchTrees {
         });
     }
     __attribute__((noinline)) void add_virial(unsigned which, Tally &tally) const {
-        MoleculesVirial<vec> virial;
-        for (int32_t p = 0; p < f.n_places; ++p) virial.add(row[p].d, row[p].t * row[p].d);
-        virial.count(which, 1, tally);
+        graph::add_virial<vec>(
+            0, f.n_places, [&](int32_t p) HOL_FORCED { return row[p].d; },
+            [&](int32_t p) HOL_FORCED { return row[p].t; }, 1, which, tally);
     }
 };
 

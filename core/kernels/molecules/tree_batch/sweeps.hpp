@@ -189,4 +189,31 @@ inline void BatchLinear::solve_again() {
     down<false>(all(), BatchFlagged{margin});
 }
 
+// The way of linear_level.hpp.
+struct BatchWay {
+    BatchLinear &z;
+    NextMolecules &ahead;
+
+    unsigned in_use() const { return bits(first_lanes(z.f.n_trees)); }
+    unsigned solve() const {
+        z.load(z.all());
+        ahead.fetch();
+        return z.solve();
+    }
+    void write(const Outputs &out, unsigned which, Tally &tally) const {
+        write_bonds_and_pulls(z, out, which, z.all());
+        if (out.virial) z.add_virial(which, tally);
+    }
+    void project(const Outputs &out, bool twice, unsigned which, Tally &tally) const {
+        write_all_but_atoms(*this, out, which, tally);
+        z.add_pulls_to_velocities(z.all());
+        if (twice) {
+            z.find_rates(z.all());
+            z.solve_again();
+            z.add_pulls_to_velocities(z.all());
+        }
+        z.write_velocities(z.all(), *out.g, which);
+    }
+};
+
 }  // namespace holonomic::HOL_ISA::graph

@@ -108,7 +108,7 @@ HOL_INLINE unsigned solve_triangles(const TriangleCall &call, int used, const At
     return good;
 }
 
-// The velocity level: twice, as velocities.hpp says.
+// The velocity level: twice, as linear_level.hpp says.
 template <Inlined where, class V>
 HOL_INLINE unsigned project_triangles(const VelocitiesCall &call, int used, const Atoms<V> &at,
                                       const TriangleMasses<V> &m, Tally &tally) {
