@@ -32,7 +32,7 @@ HOL_INLINE void load_slot(const ArmedTree &z, int32_t slot) {
 // In twice the precision. False: that doesn't do either.
 HOL_NOINLINE bool up_extended(const Molecules<double> &x, int32_t slot, int k) {
     const AtomRows<double> rows(x, slot);
-    FlaggedfulAtom atom = {};
+    FlaggedAtom atom = {};
     atom.k = k;
     atom.w = rows.w();
     for (int a = 0; a <= k; ++a) {

@@ -6,7 +6,7 @@
 namespace holonomic::HOL_ISA::graph {
 
 // One with at most three children, at which plain products have lost too much: copies of its bonds.
-struct FlaggedfulAtom {
+struct FlaggedAtom {
     static constexpr int most = 4;
     int k;  // children: bonds 0 .. k - 1; the one above is bond k
     double w;
@@ -17,7 +17,7 @@ struct FlaggedfulAtom {
 
 // Eliminates it in twice the precision (flagged_joint.hpp): does what up_joint() does. Returns false, with nothing
 // changed, if its bonds depend on each other.
-bool up_flagged(FlaggedfulAtom &);
+bool up_flagged(FlaggedAtom &);
 
 // Atoms at which a bond is cancelling (siblings.hpp): found in a first solution, then eliminated in extended precision
 // in a second one. And all that have been eliminated in extended precision, or more than fit.

@@ -11,8 +11,8 @@ namespace holonomic::HOL_ISA::graph {
 
 // An atom with at most three children, which are arms 0 .. k - 1; the bond above is arm k. Vectors are divided by a
 // power of two each, masses by one, so that no product overflows.
-struct FlaggedfulJoint {
-    static constexpr int most = FlaggedfulAtom::most;
+struct FlaggedJoint {
+    static constexpr int most = FlaggedAtom::most;
     Wide3 D[most], X[most * most];
     Wide rho[most];
     bool rigid[most];
@@ -27,7 +27,7 @@ struct FlaggedfulJoint {
         return __builtin_ldexp(1.0, e - 1);
     }
 
-    bool open(const FlaggedfulAtom &x) {
+    bool open(const FlaggedAtom &x) {
         const int k = x.k;
         mass_unit = power_of(x.w);
         joint = {};
@@ -66,12 +66,12 @@ struct FlaggedfulJoint {
     Wide pivot(int a, double E) const { return wide(E / unit[a] / unit[a] / mass_unit) + offered(joint, a, a); }
 };
 
-bool up_flagged(FlaggedfulAtom &x) {
+bool up_flagged(FlaggedAtom &x) {
     const int k = x.k;
-    FlaggedfulJoint f;
+    FlaggedJoint f;
     if (!f.open(x)) return false;
     double r[3], m[3] = {}, u[3], y[3], l[3];
-    Wide L[FlaggedfulJoint::most];
+    Wide L[FlaggedJoint::most];
     for (int j = 0; j < k; ++j) {
         y[j] = x.bond[j].t;
         if (!f.eliminate(j, -1)) return false;

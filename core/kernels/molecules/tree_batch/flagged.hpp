@@ -55,7 +55,7 @@ struct TreeFlagged {
         const unsigned lanes = (lost | held_lanes(joint.step)) & joint.x.f.held[step.first];
         for (unsigned left = lanes; left; left &= left - 1) {
             const int i = __builtin_ctz(left);
-            FlaggedfulAtom atom = {};
+            FlaggedAtom atom = {};
             const int k = atom.k = joint.children(i);
             atom.w = joint.w()[i];
             for (int a = 0; a <= k; ++a) {
