@@ -2,6 +2,7 @@
 // is not found again.
 #pragma once
 
+#include "core/kernels/molecules/atoms/layout.hpp"
 #include "core/kernels/molecules/blocks.hpp"
 
 namespace holonomic::HOL_ISA::graph {

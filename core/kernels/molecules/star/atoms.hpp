@@ -4,6 +4,7 @@
 #include "core/kernels/molecules/atoms/consecutive.hpp"
 #include "core/kernels/molecules/blocks.hpp"
 #include "core/kernels/molecules/elimination_plan.hpp"
+#include "core/kernels/molecules/image.hpp"
 #include "core/kernels/molecules/small/twin.hpp"
 
 namespace holonomic::HOL_ISA::graph {
