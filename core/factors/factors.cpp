@@ -181,7 +181,7 @@ void Factors::solve_one(const FactorsSolve &what, const double *rhs, double *vir
     const std::int64_t n_atoms = chains_.n_atoms(), numbers = 3 * n_atoms;
     double *next = static_cast<double *>(
         thread_memory(Keep::arrays_of_factors, n_others * numbers * static_cast<std::int64_t>(sizeof(double))));
-    if (!next && numbers > 0) throw std::bad_alloc();
+    if (!next && n_atoms > 0) throw std::bad_alloc();
     FactorsSolve packed = what;
     for (AtomArray *const a : {&packed.v, &packed.f, &packed.g}) {
         if (!is_other(*a)) continue;

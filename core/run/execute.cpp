@@ -259,7 +259,7 @@ private:
                              [&](Tally &of_one) { work_on_molecules(work_, unit, where, scratch, of_one); });
             });
         const MoleculeLane *lane = unit.lanes;
-        for (std::int64_t i = 0; i < unit.n_batches; ++i)
+        for (std::int64_t i = 0; unit.tree_batches && i < unit.n_batches; ++i)
             for (int l = 0; l < unit.tree_batches[i].n_trees; ++l)
                 one(unit.tree_batches[i].elimination[l], *lane++, true);
         for (std::int64_t i = 0; !unit.tree_batches && i < unit.count; ++i)
