@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/index.hpp"
+#include "core/molecules/given/lists.hpp"
 #include "core/rigid/cliques.hpp"
 #include "core/rigid/fit.hpp"
 #include "core/rigid/planar_ring.hpp"
@@ -24,20 +25,18 @@ public:
         std::ptrdiff_t size() const { return last - first; }
     };
 
-    Partners(const holonomic::Shape &shape, const double *w, const double *lengths)
-        : lengths_(lengths), start_(at(shape.n_atoms) + 1) {
-        const auto for_bonds = [&](const auto &each) {
+    Partners(const holonomic::Shape &shape, const double *w, const double *lengths) : lengths_(lengths) {
+        Lists bonds = group(shape.n_atoms, [&](const auto &give) {
             for (std::int32_t k = 0; k < shape.n_bonds; ++k)
-                if (const std::int32_t i = shape.i(k), j = shape.j(k); w[i] > 0 && w[j] > 0)
-                    each(i, j, k), each(j, i, k);
-        };
-        for_bonds([&](Atom i, Atom, std::int32_t) { ++start_[at(i) + 1]; });
-        for (std::int32_t i = 0; i < shape.n_atoms; ++i) start_[at(i) + 1] += start_[at(i)];
-        partner_.resize(at(start_.back()));
-        std::vector<std::int32_t> end(start_.begin(), start_.end() - 1);
-        for_bonds([&](Atom i, Atom j, std::int32_t k) { partner_[at(end[at(i)]++)] = {j, k}; });
-        for (std::int32_t i = 0; i < shape.n_atoms; ++i)
-            std::sort(partner_.begin() + start_[at(i)], partner_.begin() + end[at(i)]);
+                if (const std::int32_t i = shape.i(k), j = shape.j(k); w[i] > 0 && w[j] > 0) give(i, k), give(j, k);
+        });
+        partner_.reserve(bonds.item.size());
+        for (std::int32_t i = 0; i < shape.n_atoms; ++i) {
+            for (const std::int32_t *k = bonds.begin(i); k != bonds.end(i); ++k)
+                partner_.emplace_back(shape.i(*k) == i ? shape.j(*k) : shape.i(*k), *k);
+            std::sort(partner_.end() - bonds.size(i), partner_.end());
+        }
+        start_ = std::move(bonds.start);
     }
     template <class Each>
     void for_partners(Atom atom, const Each &each) const {
@@ -59,8 +58,8 @@ public:
 
 private:
     const double *const lengths_;
-    std::vector<std::int32_t> start_;  // by atom
-    std::vector<Partner> partner_;     // of each atom in ascending order
+    Numbers start_;                 // by atom
+    std::vector<Partner> partner_;  // of each atom in ascending order
 };
 
 // Calls each(atom) for partners of both, which come after `after`. The one with fewer partners is looked through: the

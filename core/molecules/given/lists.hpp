@@ -17,17 +17,33 @@ struct Lists {
     const std::int32_t *end(std::int32_t i) const { return item.data() + start[at(i) + 1]; }
 };
 
+// The lists of what for_each(give) gives by give(row, item), which is done twice. A list has its items in that order.
+template <class ForEach>
+void group(std::int32_t n_rows, const ForEach &for_each, Lists &lists) {
+    Numbers &start = lists.start;
+    start.assign(at(n_rows) + 2, 0);
+    for_each([&](std::int32_t row, std::int32_t) { ++start[at(row) + 2]; });
+    for (std::int32_t i = 0; i < n_rows; ++i) start[at(i) + 2] += start[at(i) + 1];
+    lists.item.resize(at(start.back()));
+    for_each([&](std::int32_t row, std::int32_t item) { lists.item[at(start[at(row) + 1]++)] = item; });
+    start.pop_back();  // a row begins where the one before has ended
+}
+template <class ForEach>
+Lists group(std::int32_t n_rows, const ForEach &for_each) {
+    Lists lists;
+    group(n_rows, for_each, lists);
+    return lists;
+}
+
 // Which of the pairs hold each number: calls each(k, row) for the two rows of pair k.
 template <class Each>
 void invert(std::int32_t n_rows, std::int32_t n_pairs, const Each &each, Lists &lists) {
-    lists.start.assign(at(n_rows) + 1, 0);
-    lists.item.resize(2 * at(n_pairs));
-    for (std::int32_t k = 0; k < n_pairs; ++k)
-        for (const std::int32_t i : {each(k, 0), each(k, 1)}) ++lists.start[at(i)];
-    for (std::int32_t i = 0; i < n_rows; ++i) lists.start[at(i) + 1] += lists.start[at(i)];
-    // Now they are where the rows end.
-    for (std::int32_t k = n_pairs; k-- > 0;)
-        for (const std::int32_t i : {each(k, 0), each(k, 1)}) lists.item[at(--lists.start[at(i)])] = k;
+    group(
+        n_rows,
+        [&](const auto &give) {
+            for (std::int32_t k = 0; k < n_pairs; ++k) give(each(k, 0), k), give(each(k, 1), k);
+        },
+        lists);
 }
 template <class Each>
 Lists invert(std::int32_t n_rows, std::int32_t n_pairs, const Each &each) {

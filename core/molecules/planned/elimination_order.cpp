@@ -80,34 +80,27 @@ std::vector<std::int32_t> minimum_degree(std::vector<Rows> neighbours, Ties ties
     return order;
 }
 
-Lists neighbours_of(const Lists &meeting, std::int32_t n) {
-    const std::int32_t n_lists = static_cast<std::int32_t>(meeting.start.size()) - 1;
-    Lists found;
-    found.start.assign(at(n) + 1, 0);
-    for (std::int32_t i = 0; i < n_lists; ++i)
-        for (const std::int32_t *p = meeting.begin(i); p != meeting.end(i); ++p)
-            found.start[at(*p)] += meeting.size(i) - 1;
-    for (std::int32_t k = 0, first = 0; k < n; ++k) {
-        first += found.start[at(k)];
-        found.start[at(k)] = first;  // where it ends
-    }
-    found.start[at(n)] = n > 0 ? found.start[at(n) - 1] : 0;
-    found.item.resize(at(found.start[at(n)]));
-    for (std::int32_t i = n_lists; i-- > 0;)
-        for (const std::int32_t *p = meeting.end(i); p-- != meeting.begin(i);)
-            for (const std::int32_t *q = meeting.end(i); q-- != meeting.begin(i);)
-                if (p != q) found.item[at(--found.start[at(*p)])] = *q;
-    return found;
-}
-
 namespace {
 
-void check_rows(std::size_t n) {
-    if (n > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
+void check_count(std::int64_t n) {
+    if (n > std::numeric_limits<std::int32_t>::max())
         throw std::length_error("the elimination of a molecule fills its matrix");
 }
 
 }  // namespace
+
+Lists neighbours_of(const Lists &meeting, std::int32_t n) {
+    const std::int32_t n_lists = static_cast<std::int32_t>(meeting.start.size()) - 1;
+    std::int64_t pairs = 0;
+    for (std::int32_t i = 0; i < n_lists; ++i) pairs += std::int64_t{meeting.size(i)} * (meeting.size(i) - 1);
+    check_count(pairs);
+    return group(n, [&](const auto &give) {
+        for (std::int32_t i = 0; i < n_lists; ++i)
+            for (const std::int32_t *p = meeting.begin(i); p != meeting.end(i); ++p)
+                for (const std::int32_t *q = meeting.begin(i); q != meeting.end(i); ++q)
+                    if (p != q) give(*p, *q);
+    });
+}
 
 Fill fill_of(const Lists &neighbours) {
     const std::int32_t n = static_cast<std::int32_t>(neighbours.start.size()) - 1;
@@ -128,7 +121,7 @@ Fill fill_of(const Lists &neighbours) {
         for (std::int32_t c = child[at(k)]; c >= 0; c = next_child[at(c)])
             take(fill.row.data() + fill.column_start[at(c)], fill.row.data() + fill.column_start[at(c) + 1]);
         std::sort(column.begin(), column.end());
-        check_rows(fill.row.size() + column.size());
+        check_count(static_cast<std::int64_t>(fill.row.size() + column.size()));
         fill.row.insert(fill.row.end(), column.begin(), column.end());
         fill.column_start[at(k) + 1] = static_cast<std::int32_t>(fill.row.size());
         if (column.empty()) continue;

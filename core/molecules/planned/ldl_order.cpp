@@ -31,26 +31,24 @@ Numbers sizes_of(const Fill &fill) {
 Numbers post_order(const Fill &fill, const Numbers &size) {
     const std::int32_t n = static_cast<std::int32_t>(size.size());
     const auto parent = [&](std::int32_t k) { return parent_of(fill, k); };
-    // The children of a column stand at first[k] .. end[k], the last one is visited first.
-    Numbers order, stack, first(at(n) + 1), children(at(n));
+    Lists children = group(n, [&](const auto &give) {
+        for (std::int32_t k = 0; k < n; ++k)
+            if (parent(k) >= 0) give(parent(k), k);
+    });
+    for (std::int32_t k = 0; k < n; ++k)  // the last one is visited first
+        std::sort(children.item.begin() + children.start[at(k)], children.item.begin() + children.start[at(k) + 1],
+                  [&](std::int32_t a, std::int32_t b) {
+                      return size[at(a)] != size[at(b)] ? size[at(a)] < size[at(b)] : a < b;
+                  });
+    Numbers order, stack, end(children.start.begin() + 1, children.start.end());  // end: of those not yet visited
     order.reserve(at(n));
-    for (std::int32_t k = 0; k < n; ++k)
-        if (parent(k) >= 0) ++first[at(parent(k)) + 1];
-    for (std::int32_t k = 0; k < n; ++k) first[at(k) + 1] += first[at(k)];
-    Numbers end(first.begin(), first.end() - 1);
-    for (std::int32_t k = 0; k < n; ++k)
-        if (parent(k) >= 0) children[at(end[at(parent(k))]++)] = k;
-    for (std::int32_t k = 0; k < n; ++k)
-        std::sort(children.begin() + first[at(k)], children.begin() + end[at(k)], [&](std::int32_t a, std::int32_t b) {
-            return size[at(a)] != size[at(b)] ? size[at(a)] < size[at(b)] : a < b;
-        });
     for (std::int32_t root = 0; root < n; ++root) {
         if (parent(root) >= 0) continue;
         stack.assign(1, root);
         while (!stack.empty()) {
             const std::int32_t k = stack.back();
-            if (end[at(k)] > first[at(k)]) {
-                stack.push_back(children[at(--end[at(k)])]);
+            if (end[at(k)] > children.start[at(k)]) {
+                stack.push_back(children.item[at(--end[at(k)])]);
             } else {
                 order.push_back(k);
                 stack.pop_back();
