@@ -11,11 +11,6 @@ HOL_NOINLINE void leave(const MoleculeLane *lane, unsigned which, unsigned char 
     for (; which; which &= which - 1) left[lane[__builtin_ctz(which)].molecule] = 1;
 }
 
-// The same of the ordinary verb.
-HOL_INLINE ForcesCall forces_call(const KeptCall &call) {
-    return {call.kept->r, call.v, call.f, call.g, call.lambda, call.tension, call.add, call.virial, *call.kept->box};
-}
-
 // Molecules that are kept, but one of whose bonds is cancelling, are solved in twice the precision. What it does not
 // answer for is left.
 HOL_NOINLINE void solve_extended(const KeptCall &call, const EliminationPlan &s, const MoleculeLane *lane,
@@ -28,7 +23,9 @@ HOL_NOINLINE void solve_extended(const KeptCall &call, const EliminationPlan &s,
                                     *call.kept->box},
                           s, lane, of, memory, one);
         else
-            solve_flagged(forces_call(call), s, lane, of, memory, one);
+            solve_flagged(ForcesCall{call.kept->r, call.v, call.f, call.g, call.lambda, call.tension, call.add,
+                                     call.virial, *call.kept->box},
+                          s, lane, of, memory, one);
         if (one.n_bad > 0)
             leave(lane, of, call.left);
         else

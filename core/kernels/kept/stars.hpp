@@ -189,7 +189,6 @@ private:
     template <Inlined where, class V>
     __attribute__((noinline)) unsigned solve(const Atoms<V> &at, const KeptStar<N, V> &kept, unsigned lanes) const {
         const StarAtoms<where, N, V> atoms = {at, unit.elimination->star_centre};
-        const StarOutputs outputs = {call.g, call.lambda, call.tension, call.add, call.virial};
         StarMasses<N, V> m;
         HOL_UNROLL
         for (int k = 0; k <= N; ++k) m.w[k] = kept.w[k];
@@ -199,7 +198,7 @@ private:
             atoms.read_bonds(call.rhs, 0.5, y);
         else
             find_star_sides(call.v, call.f, atoms, star, y);
-        return finish_star(outputs, atoms, star, y, Width<V>::of_bits(lanes), tally);
+        return finish_star(outputs_of(call), atoms, star, y, Width<V>::of_bits(lanes), tally);
     }
 };
 

@@ -5,9 +5,8 @@
 //   unsigned solve()                     reads and solves; the lanes that this answers for
 //   write(out, which, tally)             outputs of a solution
 //   project(out, twice, which, tally)    the same of velocities, which are `out.g`: v_i += w_i G_i. Twice: once more,
-//   with
-//                                        the rates of the velocities as they are rounded, which leaves d . (v_j - v_i)
-//                                        at their rounding
+//                                        with the rates of the velocities as they are rounded, which leaves
+//                                        d . (v_j - v_i) at their rounding
 #pragma once
 
 #include "core/kernels/memory/prefetch.hpp"

@@ -137,8 +137,8 @@ struct NetPositions : PositionWay<double> {
         return pull;
     }
     // What the last solve has left to be done comes first.
-    Flag rejected(Flag converged) {
-        if (converged.set) newton.correct();
+    Flag rejected(Flag) {
+        newton.correct();
         return Flag{newton.failed};
     }
     void note_worst(unsigned which, double error) const {

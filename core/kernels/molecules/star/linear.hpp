@@ -2,9 +2,9 @@
 // with the centre as the root and S^-1 in closed form. Lanes for which that is not good enough go the general way.
 #pragma once
 
+#include "core/kernels/molecules/linear_level.hpp"
 #include "core/kernels/molecules/star/atoms.hpp"
 #include "core/kernels/molecules/star/four_bonds.hpp"
-#include "core/kernels/molecules/store.hpp"
 #include "core/kernels/molecules/tree/joint.hpp"
 
 namespace holonomic::HOL_ISA::graph {
@@ -176,12 +176,6 @@ HOL_INLINE void write_star_bonds(const Atoms &atoms, const V *t, double factor, 
     atoms.write_bonds(out, value, which);
 }
 
-struct StarOutputs {
-    const AtomArray &g;
-    double *lambda, *tension;
-    bool add, virial;
-};
-
 // Right-hand sides, as load.hpp makes them.
 template <Inlined where, class AnyStar, int N, class V>
 HOL_INLINE void find_star_sides(const AtomArray &v, const AtomArray &f, const StarAtoms<where, N, V> &atoms,
@@ -210,7 +204,7 @@ HOL_INLINE void find_star_sides(const AtomArray &v, const AtomArray &f, const St
 
 // Solves and writes. Returns the lanes that are done.
 template <Inlined where, class AnyStar, int N, class V>
-HOL_INLINE unsigned finish_star(const StarOutputs &to, const StarAtoms<where, N, V> &atoms, AnyStar &star, const V *y,
+HOL_INLINE unsigned finish_star(const Outputs &to, const StarAtoms<where, N, V> &atoms, AnyStar &star, const V *y,
                                 MaskOf<V> in_use, Tally &tally) {
     V t[N];
     star.solve(y, t);
@@ -224,16 +218,16 @@ HOL_INLINE unsigned finish_star(const StarOutputs &to, const StarAtoms<where, N,
         write_star_bonds<N>(atoms, T, 1, to.tension, good);
     }
     if (to.virial) add_bonds_virial<N>(star.d, t, 1, good, tally);
-    if (!to.g.x) return good;
+    if (!to.g || !to.g->x) return good;
     Vector3<V> g[N + 1];
     star.pull(t, g);
     if (to.add) {
         Vector3<V> before[N + 1];
-        atoms.read(to.g, before);
+        atoms.read(*to.g, before);
         HOL_UNROLL
         for (int i = 0; i <= N; ++i) g[i] = before[i] + g[i];
     }
-    atoms.write(to.g, g, good);
+    atoms.write(*to.g, g, good);
     return good;
 }
 
@@ -255,7 +249,7 @@ struct StarForcesVerb {
         atoms.take_bonds(r, call.box, star.d);
         star.invert();
         find_star_sides(call.v, call.f, atoms, star, y);
-        return finish_star({call.g, call.lambda, call.tension, call.add, call.virial}, atoms, star, y, in_use, tally);
+        return finish_star(outputs_of(call), atoms, star, y, in_use, tally);
     }
 };
 
