@@ -238,8 +238,9 @@ HOL_NOINLINE int64_t pairs_of_single_bonds(const PositionsCall &call, const Unit
             break;
         write_positions<uniform>(arrays, at_a, a.block, x_a, atoms_a, out_a.untouched);
         write_positions<uniform>(arrays, at_b, b.block, x_b, atoms_b, out_b.untouched);
-        count_moved(tally, n_moved(out_a, W) + n_moved(out_b, W), 1);
-        right = bits(out_a.untouched & out_b.untouched) == all_lanes ? right + 1 : 0;
+        const int moved = n_moved(out_a, W) + n_moved(out_b, W);
+        count_moved(tally, moved, 1);
+        right = moved ? 0 : right + 1;
         if (__builtin_expect(right >= enough_right, 0))
             first = pass_over_right_ones<uniform, boxed, Place>(call, unit, given, first + 2 * W, end) - 2 * W;
     }
@@ -272,8 +273,9 @@ HOL_NOINLINE int64_t positions_of_molecules(const PositionsCall &call, const Uni
         write_positions<uniform>(arrays, place, block, x, atoms, out.untouched);
         if (virial || (N >= fewest_with_virial && __builtin_expect(call.virial, 0)))
             count_virial<N>(x.b, x.tau, n, splat(arrays.per_dt2) / block.unit, tally);
-        count_moved(tally, n_moved(out, n), out.solves);
-        right = bits(out.untouched) == all_lanes ? right + 1 : 0;
+        const int moved = n_moved(out, n);
+        count_moved(tally, moved, out.solves);
+        right = moved ? 0 : right + 1;
         if (!Place::loose && __builtin_expect(right >= enough_right, 0) && !call.report)
             first = pass_over_right_ones<uniform, boxed, Place>(call, unit, given, first + n, end) - n;
     }
