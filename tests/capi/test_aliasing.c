@@ -97,12 +97,12 @@ static void check(const mixture *m)
     }
 }
 
-/** Alone, with others like it, and among other atoms; of large molecules one other is enough, and under slow tools the
- * last alone. */
+/** Alone, with others like it, and among other atoms; of large molecules one other is enough. Under slow tools those like
+ * it are left out, and large molecules are among other atoms only. */
 static void check_molecule(molecule m)
 {
     molecule parts[5] = {m, m, m, m, m};
-    for (int i = quick_run() && m.n_bonds > 256 ? 2 : 0; i < 3; ++i) {
+    for (int i = quick_run() && m.n_bonds > 256 ? 2 : 0; i < 3; i += quick_run() ? 2 : 1) {
         mixture x = mixture_make(parts, i == 0 ? 1 : m.n_bonds > 1000 ? 2 : 5, i == 2 ? MIXED : ONE_AFTER_THE_OTHER, 7);
         check(&x);
         mixture_free(&x);

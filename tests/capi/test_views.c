@@ -49,8 +49,9 @@ static void forces_are_the_same_through_every_layout(void **state)
             round_to_float(&a);
             for (int i = 0; i < n_layouts; ++i)
                 for (int mode = HOL_WRITE; mode <= HOL_ADD; ++mode) {
-                    forces_through(&a, &layouts[i], &layouts[i], mode);
-                    forces_through(&a, &layouts[i], &layouts[(i + 5) % n_layouts], mode);
+                    if (!quick_run() || mode == HOL_WRITE) forces_through(&a, &layouts[i], &layouts[i], mode);
+                    if (!quick_run() || mode == HOL_ADD)
+                        forces_through(&a, &layouts[i], &layouts[(i + 5) % n_layouts], mode);
                 }
             assembly_free(&a);
         }
