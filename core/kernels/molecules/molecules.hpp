@@ -75,7 +75,7 @@ HOL_INLINE void masses_by_slot(const EliminationPlan &s, const MoleculeLane *lan
 
 // Reads one atom, in double; a component that the array does not have is 0.
 HOL_INLINE void read_row(const AtomArray &array, int64_t number, double *x) {
-    if (array.packed) {
+    if (array.packed && array.x) {
         const double *const row = reinterpret_cast<const double *>(array.x) + 3 * number;
         x[0] = row[0], x[1] = row[1], x[2] = row[2];
         return;
