@@ -73,7 +73,7 @@ struct SolveWork final : KeptWork {
     }
     void unit(const MoleculeUnit &unit, int where, double *scratch, Tally &tally) const override {
         if (!k.kept.is_kept(*unit.elimination) || (!calls->rhs && is_for_sides_alone(unit))) return;
-        for_each_call(where, [&](const KeptCall &c) { k.kept.solve_molecules(c, unit, scratch, tally); });
+        k.kept.solve_molecules(n_calls == 1 ? &variants[where] : calls, n_calls, unit, scratch, tally);
     }
     void long_chain(const Lane &lane, int where, const Team &, double *store, Tally &tally) const override {
         if (!calls->rhs) return;

@@ -272,7 +272,7 @@ struct KeptKernels {
     void (*solve_chains)(const KeptCall &, const Unit &, double *scratch, Tally &);
     bool (*is_kept)(const EliminationPlan &);
     void (*keep_molecules)(const KeepCall &, const MoleculeUnit &, double *scratch, Tally &);
-    void (*solve_molecules)(const KeptCall &, const MoleculeUnit &, double *scratch, Tally &);
+    void (*solve_molecules)(const KeptCall *, int n_calls, const MoleculeUnit &, double *scratch, Tally &);
 };
 
 // The kernels of one instruction set. `scratch` has scratch_bytes(bonds of the longest chain), aligned to 64; for long

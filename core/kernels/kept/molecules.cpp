@@ -165,18 +165,22 @@ void keep_molecules(const KeepCall &call, const MoleculeUnit &unit, double *scra
     for_each_block(unit, scratch, ahead, work);
 }
 
-void solve_kept_molecules(const KeptCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
+static void solve_kept_molecules(const KeptCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
     if (unit.elimination->way.given == Way::triangle)
         return for_each_triangle(SolveTriangles(call, tally), unit, true, scratch);
-    NextMolecules ahead;
-    if (unit.elimination->way.given == Way::sparse_ldl) {
-        SolveByLdl work = {call, unit, tally};
-        return for_each_block(unit, scratch, ahead, work);
-    }
     const int bonds_of_star = star_bonds(*unit.elimination);
     if (bonds_of_star == 3) return SolveStars<3>{call, unit, scratch, tally}.solve();
     if (bonds_of_star == 4) return SolveStars<4>{call, unit, scratch, tally}.solve();
     SolveTrees(call, unit, scratch, tally).solve();
+}
+
+void solve_kept_molecules(const KeptCall *calls, int n, const MoleculeUnit &unit, double *scratch, Tally &tally) {
+    if (unit.elimination->way.given == Way::sparse_ldl) {
+        NextMolecules ahead;
+        SolveByLdl work = {calls, n, unit, tally};
+        return for_each_block(unit, scratch, ahead, work);
+    }
+    for (int i = 0; i < n; ++i) solve_kept_molecules(calls[i], unit, scratch, tally);
 }
 
 }  // namespace holonomic::HOL_ISA

@@ -20,11 +20,5 @@ void solve_for_rates(Linear<double> &);
 // Reads the molecules and solves by sparse LDL^T. Returns the lanes that this answers for.
 unsigned solve_and_refine(const LdlLinear<vec> &);
 unsigned solve_and_refine(const LdlLinear<double> &);
-// The same in two: what is kept of an elimination (kept/ldl.hpp), and a solve with it. `bonds`: memory for those that
-// refinement finds.
-void factorize(const LdlLinear<vec> &);
-void factorize(const LdlLinear<double> &);
-unsigned solve_again_and_refine(const LdlLinear<vec> &, const Rows<vec> &bonds);
-unsigned solve_again_and_refine(const LdlLinear<double> &, const Rows<double> &bonds);
 
 }  // namespace holonomic::HOL_ISA::graph

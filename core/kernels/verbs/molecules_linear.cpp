@@ -31,32 +31,12 @@ void solve_for_rates(Linear<vec> &z) { z.solve_for_rates(); }
 void solve_for_rates(Linear<double> &z) { z.solve_for_rates(); }
 
 template <class V>
-static inline unsigned prove_or_refine(const LdlLinear<V> &x) {
+static inline unsigned factorize_and_prove(const LdlLinear<V> &x) {
+    LdlErrorBound<V>::factorize(x);
     const unsigned proven = LdlErrorBound<V>::solve(x);
     return proven == bits(x.in_use()) ? proven : LdlRefinement<V>(x).refine(proven);
 }
-template <class V>
-static inline unsigned factorize_and_prove(const LdlLinear<V> &x) {
-    LdlErrorBound<V>::factorize(x);
-    return prove_or_refine(x);
-}
 unsigned solve_and_refine(const LdlLinear<vec> &x) { return factorize_and_prove(x); }
 unsigned solve_and_refine(const LdlLinear<double> &x) { return factorize_and_prove(x); }
-
-void factorize(const LdlLinear<vec> &x) { LdlErrorBound<vec>::factorize(x); }
-void factorize(const LdlLinear<double> &x) { LdlErrorBound<double>::factorize(x); }
-
-// Refinement writes bonds, and those that are kept must stay.
-template <class V>
-static inline unsigned solve_sides(const LdlLinear<V> &x, const Rows<V> &bonds) {
-    LdlErrorBound<V>::load_sides(x);
-    const unsigned proven = LdlErrorBound<V>::solve(x);
-    if (proven == bits(x.in_use())) return proven;
-    LdlLinear<V> own(x);
-    own.d = bonds;
-    return LdlRefinement<V>(own).refine(proven);
-}
-unsigned solve_again_and_refine(const LdlLinear<vec> &x, const Rows<vec> &bonds) { return solve_sides(x, bonds); }
-unsigned solve_again_and_refine(const LdlLinear<double> &x, const Rows<double> &bonds) { return solve_sides(x, bonds); }
 
 }  // namespace holonomic::HOL_ISA::graph

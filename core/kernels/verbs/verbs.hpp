@@ -48,7 +48,7 @@ void keep_chains(const KeepCall &, const Unit &, double *scratch, Tally &);
 void solve_kept_chains(const KeptCall &, const Unit &, double *scratch, Tally &);
 bool is_kept(const EliminationPlan &);
 void keep_molecules(const KeepCall &, const MoleculeUnit &, double *scratch, Tally &);
-void solve_kept_molecules(const KeptCall &, const MoleculeUnit &, double *scratch, Tally &);
+void solve_kept_molecules(const KeptCall *, int n_calls, const MoleculeUnit &, double *scratch, Tally &);
 
 int64_t bodies_scratch_bytes(int64_t n_atoms);
 uint64_t bodies_forces(const ForcesCall &, const BodyUnit &, double *scratch, BodyResult *);

@@ -238,16 +238,6 @@ struct LdlErrorBound {
             own.firm[&subtree - own.s.subtree] = firm;
         });
     }
-    // Other right-hand sides on their way up, with factors that are there.
-    static void load_sides(const LdlLinear<V> &all) {
-        clear_sides(all.s, all.t);
-        all.up([](const LdlLinear<V> &own, const Subtree &subtree) HOL_FORCED {
-            for_tiles_up(own.s, subtree, [&](const Tile &tile) HOL_FORCED {
-                own.load_sides(tile);
-                solve_up(own.s, tile, own.lower, own.t);
-            });
-        });
-    }
     // The way down. Returns the lanes in which the proof holds; multipliers are found in all.
     static unsigned solve(const LdlLinear<V> &all) {
         clear_sides(all.s, all.back);

@@ -182,13 +182,6 @@ struct LdlLinear {
         for (; row < tile.end_row; ++row) d[row] = bond_at(s, row, box, r);
         if (terms & (given | rates)) add_given(tile, t);
     }
-    // Right-hand sides alone, where bonds are there.
-    __attribute__((noinline)) void load_sides(const Tile &tile) const {
-        if (terms & squares) read_atoms(*in.v, at, s, tile, v);
-        load_inputs(tile);
-        for (int64_t k = tile.first; k < tile.end; k += step) some(t, k) = sides_of(tile, k, terms);
-        if (terms & given) add_given(tile, t);
-    }
     // What velocities and inputs give to the right-hand sides of columns k ..
     HOL_FORCED Columns<V> sides_of(const Tile &tile, int64_t k, int wanted) const {
         const int64_t row = tile.first_row + (k - tile.first);

@@ -4,33 +4,9 @@
 #include "core/kernels/arithmetic/thresholds.hpp"
 #include "core/kernels/molecules/refine.hpp"
 #include "core/kernels/molecules/sparse_ldl/error_bound.hpp"
+#include "core/kernels/molecules/sparse_ldl/pairs.hpp"
 
 namespace holonomic::HOL_ISA::graph {
-
-// Products in twice the precision, as in twice.hpp.
-HOL_INLINE Pair<Row> product_of(const Row &a, const Row &b) {
-#if HOL_HAS_FMA
-    const Row p = a * b;
-    return {p, multiply_add(a, b, -p)};
-#else
-    return two_product<Row>(a, b);
-#endif
-}
-template <class V>
-HOL_INLINE Pair<RowInLanes<V>> product_of(const RowInLanes<V> &a, const RowInLanes<V> &b) {
-    const Pair<V> x = two_product<V>(a.x, b.x), y = two_product<V>(a.y, b.y), z = two_product<V>(a.z, b.z);
-    return {{x.hi, y.hi, z.hi, V{}}, {x.lo, y.lo, z.lo, V{}}};
-}
-template <class R>
-HOL_INLINE Pair<R> product_of(const R &s, const Pair<R> &a) {
-    const Pair<R> p = product_of(s, a.hi);
-    return {p.hi, multiply_add(s, a.lo, p.lo)};
-}
-template <class R>
-HOL_INLINE Pair<R> product_of(const Pair<R> &a, const Pair<R> &b) {
-    const Pair<R> p = product_of(a.hi, b.hi);
-    return {p.hi, multiply_add(a.hi, b.lo, multiply_add(a.lo, b.hi, p.lo))};
-}
 
 template <class V>
 struct LdlRefinement {
@@ -157,8 +133,8 @@ struct LdlRefinement {
                 const Twice dv = two_difference<Row>(x.v.at_four_times(to), x.v.at_four_times(from));
                 square[i] = product_of(dv, dv);
             }
-            Pair<Columns<V>> sum = sums(product);
-            if (terms & squares) sum = add_pairs(sum, sums(square));
+            Pair<Columns<V>> sum = sums_of_pairs<V>(product);
+            if (terms & squares) sum = add_pairs(sum, sums_of_pairs<V>(square));
             if ((terms & (given | rates)) && (x.in.rhs || x.in.strain)) {
                 Columns<V> c = {};
                 for (int i = 0; i < step && k + i < tile.end; ++i)
@@ -168,18 +144,6 @@ struct LdlRefinement {
             x.some(x.t, k) = sum.hi + sum.lo;
         }
     }
-    HOL_FORCED static Pair<Columns<V>> sums(const Twice (&p)[step]) {
-        Row hi[step], lo[step];
-        HOL_UNROLL
-        for (int i = 0; i < step; ++i) {
-            hi[i] = p[i].hi;
-            lo[i] = p[i].lo;
-        }
-        const Turned<V> high = turned(hi), low = turned(lo);
-        typedef Pair<Columns<V>> Sum;
-        return add_pairs(Sum{high.x, low.x}, add_pairs(Sum{high.y, low.y}, Sum{high.z, low.z}));
-    }
-
     void solve() const {
         clear_sides(s, x.t);
         down([](const LdlRefinement &own, const Tile &tile) HOL_FORCED {

@@ -52,6 +52,8 @@ HOL_INLINE Row row_of(const Vector3<double> &a) { return Row{a.x, a.y, a.z, 0}; 
 HOL_INLINE Vector3<double> vector_of(const Row &a) { return {a[0], a[1], a[2]}; }
 HOL_INLINE double more_of(const Row &a) { return a[3]; }
 HOL_INLINE void set_more(Row &a, double more) { a[3] = more; }
+// x, y and z alone where that is less work.
+HOL_INLINE void set_vector(Row &a, const Row &b) { a = b; }
 HOL_INLINE double component(const Row &a, int c, int) { return a[c]; }
 HOL_INLINE Row absolute(const Row &a) {
     return reinterpret_cast<Row>(reinterpret_cast<RowBits>(a) & (RowBits{} + 0x7fffffffffffffffLL));
@@ -120,6 +122,12 @@ HOL_INLINE V more_of(const RowInLanes<V> &a) {
 template <class V>
 HOL_INLINE void set_more(RowInLanes<V> &a, const V &more) {
     a.more = more;
+}
+template <class V>
+HOL_INLINE void set_vector(RowInLanes<V> &a, const RowInLanes<V> &b) {
+    a.x = b.x;
+    a.y = b.y;
+    a.z = b.z;
 }
 template <class V>
 HOL_INLINE double component(const RowInLanes<V> &a, int c, int lane) {

@@ -129,12 +129,12 @@ HOL_INLINE void sum_pulls(const LdlPlan &s, const Tile &tile, const V *multiplie
                           const Rows<V> &of) {
     const Rows<V> bond = bonds.from(-tile.first);
     const int32_t *const from = s.from + (tile.first_row - tile.first), *const to = s.to + (from - s.from);
-    for (int64_t i = 0; i < tile.end_site - tile.first_site; ++i) of[i] = RowOf<V>{};
+    for (int64_t i = 0; i < tile.end_site - tile.first_site; ++i) set_vector(of[i], RowOf<V>{});
     for (int64_t k = tile.first; k < tile.end; ++k) {
         const RowOf<V> p = in_row(multiplier[k]) * bond[k];
         RowOf<V> &head = of.at_four_times(from[k]), &tail = of.at_four_times(to[k]);
-        head = head + p;
-        tail = tail - p;
+        set_vector(head, head + p);
+        set_vector(tail, tail - p);
     }
 }
 // Adds what pulls ghosts of later tiles to what pulls the atoms of a tile, by their sites.
@@ -225,14 +225,18 @@ HOL_INLINE const V &at_four_times(const V *values, int32_t k) {
     constexpr int64_t quarter = sizeof(V) / 4;  // bytes
     return *reinterpret_cast<const V *>(reinterpret_cast<const char *>(values) + quarter * k);
 }
-// The sums of the inverse masses of both ends.
+// The inverse masses of the columns' ends, and the sums of those of both ends.
 template <class V>
-HOL_INLINE Columns<V> masses_at(const V *w, const int32_t *from, const int32_t *to) {
-    const auto of = [&](int i) HOL_FORCED { return at_four_times(w, from[i]) + at_four_times(w, to[i]); };
+HOL_INLINE Columns<V> masses_at(const V *w, const int32_t *end) {
+    const auto of = [&](int i) HOL_FORCED { return at_four_times(w, end[i]); };
     if constexpr (at_once<V> == 4)
         return Row{of(0), of(1), of(2), of(3)};
     else
         return of(0);
+}
+template <class V>
+HOL_INLINE Columns<V> masses_at(const V *w, const int32_t *from, const int32_t *to) {
+    return masses_at<V>(w, from) + masses_at<V>(w, to);
 }
 // Inverse masses of molecules in lanes.
 template <class V>
