@@ -100,24 +100,25 @@ static void uneven_forces_agree_with_a_dense_solution(void **state)
 
 /**
  * Right-hand sides of which some bonds have a millionth of what others have, so that multipliers are small
- * differences.
+ * differences: of many molecules, with what they pull; and of a single one, without, so that several share a vector.
  */
 static void uneven_right_hand_sides_agree_with_a_dense_solution(void **state)
 {
     (void)state;
-    enum { SIDES = 4 };
+    enum { SIDES = 5 };
     static const molecule_kind kinds[] = {MOLECULE_TREE,  MOLECULE_RING,    MOLECULE_COMB,       MOLECULE_STAR,
                                           MOLECULE_CHAIN, MOLECULE_PEPTIDE, MOLECULE_FUSED_RINGS};
     random_stream stream = random_seed(11);
-    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; ++k)
+    for (size_t k = 0; k < 2 * (sizeof kinds / sizeof *kinds); ++k)
         for (int size = 3; size < 30; size = size * 3 + 1) {
-            mixture m = mixture_of_kind(kinds[k], quick_run() ? 12 : 40, size, size + 3, MIXED, 300 + k);
+            const int64_t n = k % 2 ? 1 : quick_run() ? 12 : 40;
+            mixture m = mixture_of_kind(kinds[k / 2], n, size, size + 3, MIXED, 300 + k / 2);
             const size_t bonds = (size_t)m.n_bonds, atoms = mixture_size(&m);
             double *rhs = untouched(SIDES * bonds), *lambda = untouched(SIDES * bonds), *g = untouched(SIDES * atoms);
             for (size_t i = 0; i < SIDES * bonds; ++i)
                 rhs[i] = random_normal(&stream) * pow(10, random_uniform(&stream) < 0.5 ? 0 : -6);
             hol_factors *factors = factors_at(m.chains, m.r);
-            CHECK(hol_factors_solve(factors, SIDES, rhs, lambda, g, HOL_WRITE, NULL));
+            CHECK(hol_factors_solve(factors, SIDES, rhs, lambda, n > 1 ? g : NULL, HOL_WRITE, NULL));
             for (int64_t p = 0; p < m.n_parts; ++p)
                 for (size_t s = 0; s < SIDES; ++s) {
                     const molecule *part = m.parts + p;
@@ -133,7 +134,7 @@ static void uneven_right_hand_sides_agree_with_a_dense_solution(void **state)
                     for (int64_t b = 0; b < part->n_bonds; ++b)
                         CHECK_AT_MOST(fabsl(found[b] - exact.lambda[b]), unit * exact.lambda_scale[b]);
                     for (int64_t i = 0; i < 3 * part->n_atoms; ++i)
-                        if (exact.g_scale[i / 3] > 0)
+                        if (n > 1 && exact.g_scale[i / 3] > 0)
                             CHECK_AT_MOST(fabsl(pull[i] - exact.g[i]), unit * exact.g_scale[i / 3]);
                     free(of), free(found), free(pull);
                     molecule_solution_free(&exact);
@@ -180,26 +181,31 @@ static void chains_agree_with_hol_forces(void **state)
             }
 }
 
-/** Molecules too large for lanes, by sparse LDL^T and as large trees, beside hol_forces and hol_solve. */
+/** Molecules too large for lanes, by sparse LDL^T, as large trees and as rings, beside hol_forces and hol_solve. */
 static void large_molecules_agree_with_hol_forces(void **state)
 {
     (void)state;
-    static const molecule_kind kinds[] = {MOLECULE_PEPTIDE, MOLECULE_FUSED_RINGS, MOLECULE_COMB};
-    static const int64_t sizes[] = {60, 120, 1100};
+    static const molecule_kind kinds[] = {MOLECULE_PEPTIDE, MOLECULE_FUSED_RINGS, MOLECULE_COMB, MOLECULE_RING};
+    static const int64_t sizes[] = {60, 120, 1100, 700};
     random_stream stream = random_seed(13);
-    for (int k = 0; k < 3; ++k)
+    for (int k = 0; k < 4; ++k)
         for (int how = 0; how < 2; ++how) {
             mixture m = mixture_of_kind(kinds[k], 2, sizes[k], sizes[k], (mixing)how, 500 + (uint64_t)k);
             const size_t bonds = (size_t)m.n_bonds;
-            double *rhs = untouched(bonds), *lambda[2], *g[2], largest;
-            for (int i = 0; i < 2; ++i) lambda[i] = untouched(bonds), g[i] = untouched(mixture_size(&m));
-            for (size_t b = 0; b < bonds; ++b) rhs[b] = random_normal(&stream);
+            double *rhs = untouched(2 * bonds), *lambda[2], *g[2], largest;
+            for (int i = 0; i < 2; ++i) lambda[i] = untouched(2 * bonds), g[i] = untouched(mixture_size(&m));
+            for (size_t b = 0; b < bonds; ++b) rhs[b] = rhs[bonds + b] = random_normal(&stream);
             hol_factors *factors = factors_at(m.chains, m.r);
-            for (int what = 0; what < 3; ++what) {
+            for (int what = 0; what < 4; ++what) {
                 const double *v = what == 1 ? m.v : NULL;
                 if (what == 2) {
                     CHECK(hol_solve(m.chains, m.r, rhs, lambda[0], g[0], HOL_WRITE, NULL));
                     CHECK(hol_factors_solve(factors, 1, rhs, lambda[1], g[1], HOL_WRITE, NULL));
+                } else if (what == 3) {  // the same as two at once
+                    memcpy(lambda[0], lambda[1], bonds * sizeof *rhs);
+                    CHECK(hol_factors_solve(factors, 2, rhs, lambda[1], NULL, HOL_WRITE, NULL));
+                    assert_same_bits(lambda[1], lambda[0], bonds);
+                    assert_same_bits(lambda[1] + bonds, lambda[0], bonds);
                 } else {
                     CHECK(hol_forces(m.chains, m.r, v, m.f, lambda[0], NULL, g[0], HOL_WRITE, NULL));
                     CHECK(hol_factors_forces(factors, v, m.f, lambda[1], NULL, g[1], HOL_WRITE, NULL));

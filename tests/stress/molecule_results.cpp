@@ -83,7 +83,8 @@ molecule_results blank_results(const placement &a)
     return o;
 }
 
-/** With factors that are kept: the first failure of three calls. */
+/** With factors that are kept: the first failure of three calls. Two right-hand sides of one molecule share a vector.
+ */
 void compute_kept(const placement &a, molecule_results &o)
 {
     hol_factors *made = nullptr;
@@ -92,7 +93,11 @@ void compute_kept(const placement &a, molecule_results &o)
     const int update = hol_factors_update(made, a.r.data());
     const int forces = hol_factors_forces(made, a.v.data(), a.f.data(), o.kept_lambda.data(), nullptr, o.kept_g.data(),
                                           HOL_WRITE, nullptr);
-    const int solve = hol_factors_solve(made, 1, a.rhs.data(), o.kept_solved.data(), nullptr, HOL_WRITE, nullptr);
+    const auto n = static_cast<std::ptrdiff_t>(a.rhs.size());
+    numbers rhs(a.rhs), solved(2 * a.rhs.size(), blank());
+    rhs.insert(rhs.end(), a.rhs.begin(), a.rhs.end());
+    const int solve = hol_factors_solve(made, 2, rhs.data(), solved.data(), nullptr, HOL_WRITE, nullptr);
+    o.kept_solved.assign(solved.begin() + n, solved.end());
     o.kept = update != HOL_OK ? update : forces != HOL_OK ? forces : solve;
     hol_factors_destroy(made);
 }

@@ -67,11 +67,15 @@ private:
     __attribute__((noinline)) void load(const Tile &tile) const {
         read_atoms(x.coordinates, x.at, s, tile, x.r);
         for (int64_t row = tile.first_row; row < tile.end_row; ++row) {
-            Vector3<V> d = {}, low = {};
-            unrounded_bond(x.box, vector_of(x.r.at_four_times(s.from[row])), vector_of(x.r.at_four_times(s.to[row])), d,
-                           low);
-            x.d[row] = row_of(d);
-            bond_low[row] = row_of(low);
+            const Row &from = x.r.at_four_times(s.from[row]), &to = x.r.at_four_times(s.to[row]);
+            Pair<Row> bond = two_difference<Row>(to, from);
+            if (x.box.shape != Box::none) {
+                Vector3<V> d = {}, low = {};
+                unrounded_bond(x.box, vector_of(from), vector_of(to), d, low);
+                bond = {row_of(d), row_of(low)};
+            }
+            x.d[row] = bond.hi;
+            bond_low[row] = bond.lo;
         }
         const V *const of_site = x.w + tile.first_site;
         int64_t row = tile.first_row;

@@ -13,8 +13,8 @@ namespace holonomic::HOL_ISA {
 using namespace graph;
 
 bool is_kept(const EliminationPlan &s) {
-    return s.way.given == Way::triangle || s.way.given == Way::sparse_ldl ||
-           (!s.alone && (s.way.given == Way::tree || s.way.given == Way::ring));
+    return s.way.given == Way::triangle || s.way.given == Way::sparse_ldl || s.way.given == Way::ring ||
+           (!s.alone && s.way.given == Way::tree);
 }
 
 // Stars whose closed forms are compiled; others are kept as trees.
