@@ -1047,14 +1047,14 @@ HOL_API void hol_factors_destroy(hol_factors *factors);
 /**
  * Makes the factors at these positions, in the box and with the rate of the box that the set has now. They hold for
  * these until the next update. An update costs about as much as hol_forces, allocates the first time and after a change
- * of the set, and keeps 5 to 16 doubles per bond and 4 per atom, more where cycles fill. So factors pay from about
+ * of the set, and keeps 5 to 20 doubles per bond and 4 per atom, more where cycles fill. So factors pay from about
  * three solves on.
  *
- * Factors are kept for chains, trees and rings of up to 2048 bonds, for triangles, and for all molecules with cycles
- * but networks; forces of chains of more than 256 bonds, and of large trees that are mostly chains, do not use them.
- * For all others only the positions are kept, and solves cost as much as hol_forces and hol_solve: large trees,
- * networks, rigid bodies, molecules that need more than plain products, and all molecules of a set in which molecules
- * share fixed atoms. All results are as accurate as those of hol_forces and hol_solve.
+ * Factors are kept for chains, trees, rings and triangles, and for all molecules with cycles but networks; forces of
+ * chains of more than 256 bonds, and of trees of more than 2048, do not use them. For all others only the positions are
+ * kept, and solves cost as much as hol_forces and hol_solve: networks, rigid bodies, trees with an atom of hundreds of
+ * bonds, molecules that need more than plain products, and all molecules of a set in which molecules share fixed atoms.
+ * All results are as accurate as those of hol_forces and hol_solve.
  * @param[in,out] factors
  * @param[in]     r        positions [n_atoms][3]. Copied
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_NOT_FINITE; HOL_ERR_DEGENERATE; HOL_ERR_MEMORY. After a bad molecule all others

@@ -1,5 +1,9 @@
 #include "core/factors/keep.hpp"
 
+#include <algorithm>
+
+#include "core/index.hpp"
+#include "core/molecules/planned/elimination_plan.hpp"
 #include "core/run/apart.hpp"
 #include "core/run/execute.hpp"
 #include "core/run/lane.hpp"
@@ -13,14 +17,21 @@ namespace {
 // shapes are left.
 struct KeptWork : Work {
     const Kernels &k = kernels();
+    const Plan &plan;
     unsigned char *const left;
-    explicit KeptWork(unsigned char *marks) : left(marks) {}
+    KeptWork(const Chains &chains, unsigned char *marks) : plan(chains.plan()), left(marks) {}
     std::int64_t long_blocks(std::int64_t) const override { return 0; }
     std::int64_t long_bytes(std::int64_t n_bonds) const override {
         return kernels_for_one_chain().scratch_bytes(n_bonds);
     }
+    std::int64_t scratch_bytes() const override {
+        std::int64_t most = 0;
+        for (const std::int32_t s : plan.shapes)
+            most = std::max(most, k.kept.scratch_bytes(*plan.elimination_plans[at(s)]));
+        return most;
+    }
     static bool is_for_sides_alone(const MoleculeUnit &unit) {
-        return unit.elimination->way.given == Way::sparse_ldl && unit.elimination->way.forces != Way::sparse_ldl;
+        return list_of_kept(*unit.elimination) && unit.elimination->way.forces != Way::sparse_ldl;
     }
     bool is_left(const MoleculeUnit &unit) const {
         if (k.kept.is_kept(*unit.elimination)) return false;
@@ -31,7 +42,7 @@ struct KeptWork : Work {
 
 struct KeepWork final : KeptWork {
     const KeepCall &call;
-    explicit KeepWork(const KeepCall &c) : KeptWork(c.left), call(c) {}
+    KeepWork(const Chains &chains, const KeepCall &c) : KeptWork(chains, c.left), call(c) {}
     void unit(const Unit &unit, int, double *scratch, Tally &tally) const override {
         kernels(unit).kept.keep_chains(call, unit, scratch, tally);
     }
@@ -53,15 +64,15 @@ struct SolveWork final : KeptWork {
     const Variants<KeptCall> variants;  // of a single call
     const KeptCall *const calls;
     const int n_calls;
-    SolveWork(const KeptCall *given, int n, Apart &apart)
-        : KeptWork(given->left), variants(
-                                     *given, apart,
-                                     [&](KeptCall &c) {
-                                         c.rhs = apart.inputs(given->rhs);
-                                         c.lambda = apart.results(given->lambda);
-                                         c.tension = apart.results(given->tension);
-                                     },
-                                     [](KeptCall &) {}),
+    SolveWork(const Chains &chains, const KeptCall *given, int n, Apart &apart)
+        : KeptWork(chains, given->left), variants(
+                                             *given, apart,
+                                             [&](KeptCall &c) {
+                                                 c.rhs = apart.inputs(given->rhs);
+                                                 c.lambda = apart.results(given->lambda);
+                                                 c.tension = apart.results(given->tension);
+                                             },
+                                             [](KeptCall &) {}),
           calls(given), n_calls(n) {}
     template <class Body>
     void for_each_call(int where, const Body &body) const {
@@ -85,11 +96,15 @@ struct SolveWork final : KeptWork {
 
 }  // namespace
 
-void keep(const Chains &chains, const KeepCall &call) { execute(chains, KeepWork(call)); }
+void keep(const Chains &chains, const KeepCall &call) {
+    const Plan &plan = chains.plan();
+    for (const std::int32_t s : plan.shapes) make_list_of_kept(*plan.elimination_plans[at(s)]);
+    execute(chains, KeepWork(chains, call));
+}
 
 Tally solve_kept(const Chains &chains, const KeptCall *calls, int n) {
     Apart apart(chains);
-    const Tally tally = execute(chains, SolveWork(calls, n, apart));
+    const Tally tally = execute(chains, SolveWork(chains, calls, n, apart));
     apart.put_back();
     for (int k = 0; k < n; ++k) {
         clear_unconstrained(chains, calls[k].lambda);

@@ -271,6 +271,7 @@ struct KeptKernels {
     void (*keep_chains)(const KeepCall &, const Unit &, double *scratch, Tally &);
     void (*solve_chains)(const KeptCall &, const Unit &, double *scratch, Tally &);
     bool (*is_kept)(const EliminationPlan &);
+    int64_t (*scratch_bytes)(const EliminationPlan &);  // beyond that of other verbs; or 0
     void (*keep_molecules)(const KeepCall &, const MoleculeUnit &, double *scratch, Tally &);
     void (*solve_molecules)(const KeptCall *, int n_calls, const MoleculeUnit &, double *scratch, Tally &);
 };

@@ -54,16 +54,15 @@ struct KeptLdl {
 struct KeepByLdl {
     const KeepCall &call;
     const MoleculeUnit &unit;
+    const LdlPlan &s;
 
     template <class V>
     void block(const MoleculeLane *lane, int used, bool, double *scratch) const {
-        const LdlPlan &s = *unit.elimination->ldl;
         double *const room = call.kept->room(call.kept->owner, lane[0].molecule, KeptLdl<V>::doubles(s));
         if (!room) return leave(lane, (1u << used) - 1, call.left);
         Memory<V> memory = {scratch};
-        const LdlBlock<V> block = {*unit.elimination, lane, used, true, false, unit.team, memory};
         const Inputs none = {};
-        LdlLinear<V> x = block.linear(call.box, call.r, none, 0);
+        LdlLinear<V> x(s, lane, used, true, false, unit.team, call.box, call.r, none, 0, memory);
         const Rows<V> low_bonds = x.d;
         const KeptLdl<V> kept(s, room);
         kept.lend_to(x);
@@ -77,16 +76,17 @@ struct SolveByLdl {
     const KeptCall *const calls;
     const int n_calls;
     const MoleculeUnit &unit;
+    const LdlPlan &s;
     Tally &tally;
 
     template <class V>
     void block(const MoleculeLane *lane, int used, bool, double *scratch) const {
         double *const from = const_cast<double *>(calls->kept->block[lane[0].molecule]);
         if (!from) return;
-        const KeptLdl<V> kept(*unit.elimination->ldl, from);
+        const KeptLdl<V> kept(s, from);
         int done = 0;
         if constexpr (W > 1 && Width<V>::lanes == 1)
-            for (; n_calls - done > 1 && go_together(kept.s); done += W)
+            for (; n_calls - done > 1 && go_together(); done += W)
                 solve_together(kept, lane, calls + done, n_calls - done < W ? n_calls - done : W, scratch);
         for (; done < n_calls; ++done) solve(kept, calls[done], lane, used, scratch);
     }
@@ -96,10 +96,9 @@ private:
     __attribute__((noinline)) void solve(const KeptLdl<V> &kept, const KeptCall &call, const MoleculeLane *lane,
                                          int used, double *scratch) const {
         Memory<V> memory = {scratch};
-        const LdlBlock<V> block = {*unit.elimination, lane, used, true, true, unit.team, memory};
         const Inputs in = {call.v.x ? &call.v : nullptr, call.f.x ? &call.f : nullptr, call.rhs, false};
         const int terms = call.rhs ? given : (call.v.x ? squares : 0) | (call.f.x ? pulls : 0);
-        LdlLinear<V> x = block.linear(*call.kept->box, call.kept->r, in, terms);
+        LdlLinear<V> x(s, lane, used, true, true, unit.team, *call.kept->box, call.kept->r, in, terms, memory);
         kept.lend_to(x);
         const LdlKeptSolve<V, V> pairs = kept.solve(Pairs<V>{x.t, x.back});
         pairs.start();
@@ -115,22 +114,28 @@ private:
                 if (call.g.x) find_pulls(own, tile);
             });
         });
-        const unsigned wanted = kept.lanes() & bits(x.in_use()),
-                       good =
-                           pairs.good_lanes(wanted, kept.least_part(wanted), reinterpret_cast<double *>(x.a_low.start));
+        const unsigned wanted = kept.lanes() & bits(x.in_use());
+        double *const at_sites = reinterpret_cast<double *>(x.a_low.start);
+        const unsigned good = pairs.good_lanes(wanted, kept.least_part(wanted), at_sites);
         write_by_ldl(call, x, good, tally);
         if (good != wanted) solve_extended(call, *unit.elimination, lane, wanted & ~good, memory.next, tally);
     }
     // Right-hand sides of a tile; their low words, in `back`, are none.
     template <class V>
     static __attribute__((noinline)) void load_sides(const LdlLinear<V> &x, const Tile &tile) {
+        if (x.terms & given) {
+            for (int32_t k = tile.first; k < tile.end; ++k) {
+                x.t[k] = x.given_to(tile, k);
+                x.back[k] = V{};
+            }
+            return;
+        }
         if (x.terms & squares) read_atoms(*x.in.v, x.at, x.s, tile, x.v);
-        if (!(x.terms & given)) x.load_inputs(tile);
+        x.load_inputs(tile);
         for (int64_t k = tile.first; k < tile.end; k += x.step) {
             x.some(x.t, k) = x.sides_of(tile, k, x.terms);
             x.some(x.back, k) = Columns<V>{};
         }
-        x.add_given(tile, x.t);
     }
     template <class V>
     static __attribute__((noinline)) void find_pulls(const LdlLinear<V> &x, const Tile &tile) {
@@ -141,7 +146,7 @@ private:
 
     // Several right-hand sides of one molecule in lanes: where nothing but multipliers is wanted of them, and the
     // memory for one of them does.
-    bool go_together(const LdlPlan &s) const {
+    bool go_together() const {
         bool all = W * 2 * in_fours(s.n_columns) + s.n_sites <= LdlLinear<double>::values(s);
         for (int i = 0; i < n_calls; ++i)
             all = all && calls[i].rhs && calls[i].lambda && !calls[i].tension && !calls[i].g.x && !calls[i].virial;
@@ -149,7 +154,6 @@ private:
     }
     __attribute__((noinline)) void solve_together(const KeptLdl<double> &kept, const MoleculeLane *lane,
                                                   const KeptCall *call, int n, double *scratch) const {
-        const LdlPlan &s = kept.s;
         if (!kept.lanes()) return;
         Memory<vec> memory = {scratch};
         vec *const high = memory.values(in_fours(s.n_columns));

@@ -13,8 +13,13 @@ namespace holonomic::HOL_ISA {
 using namespace graph;
 
 bool is_kept(const EliminationPlan &s) {
-    return s.way.given == Way::triangle || s.way.given == Way::sparse_ldl || s.way.given == Way::ring ||
+    return s.way.given == Way::triangle || list_of_kept(s) || s.way.given == Way::ring ||
            (!s.alone && s.way.given == Way::tree);
+}
+
+int64_t kept_scratch_bytes(const EliminationPlan &s) {
+    if (!s.late_ldl) return 0;
+    return LdlLinear<double>::values(*s.late_ldl) * static_cast<int64_t>(sizeof(double)) + 64 + s.extended_bytes;
 }
 
 // Stars whose closed forms are compiled; others are kept as trees.
@@ -154,8 +159,8 @@ void keep_molecules(const KeepCall &call, const MoleculeUnit &unit, double *scra
     if (unit.elimination->way.given == Way::triangle)
         return for_each_triangle(KeepTriangles(call), unit, true, scratch);
     NextMolecules ahead;
-    if (unit.elimination->way.given == Way::sparse_ldl) {
-        KeepByLdl work = {call, unit};
+    if (const LdlPlan *const list = list_of_kept(*unit.elimination)) {
+        KeepByLdl work = {call, unit, *list};
         return for_each_block(unit, scratch, ahead, work);
     }
     const LeaveStars rest = {call.left, ahead};
@@ -175,9 +180,9 @@ static void solve_kept_molecules(const KeptCall &call, const MoleculeUnit &unit,
 }
 
 void solve_kept_molecules(const KeptCall *calls, int n, const MoleculeUnit &unit, double *scratch, Tally &tally) {
-    if (unit.elimination->way.given == Way::sparse_ldl) {
+    if (const LdlPlan *const list = list_of_kept(*unit.elimination)) {
         NextMolecules ahead;
-        SolveByLdl work = {calls, n, unit, tally};
+        SolveByLdl work = {calls, n, unit, *list, tally};
         return for_each_block(unit, scratch, ahead, work);
     }
     for (int i = 0; i < n; ++i) solve_kept_molecules(calls[i], unit, scratch, tally);

@@ -130,6 +130,8 @@ struct EliminationPlan {
     // once a metric has been asked for, which no other call uses.
     const EliminationPlan *extended;
     mutable const EliminationPlan *late_extended = nullptr;
+    // Of a large tree that is a batch of trees: a list that is made once factors are kept, which no other call uses.
+    mutable const LdlPlan *late_ldl = nullptr;
 
     EliminationPlan() = default;
     EliminationPlan(const EliminationPlan &) = delete;
@@ -143,6 +145,11 @@ struct EliminationPlan {
 // The order of elimination for the extended-precision solver; or nullptr.
 static inline const EliminationPlan *extended_order(const EliminationPlan &s) {
     return !s.network ? &s : s.extended ? s.extended : s.late_extended;
+}
+// The list along which factors are kept for right-hand sides that are given; or nullptr.
+static inline const LdlPlan *list_of_kept(const EliminationPlan &s) {
+    if (s.way.given != Way::sparse_ldl && s.way.given != Way::large_tree) return nullptr;
+    return s.ldl ? s.ldl : s.late_ldl;
 }
 
 }  // namespace holonomic

@@ -42,7 +42,7 @@ const Kernels kernels = {
      molecules_metric, molecules_solve},
     {tridiagonal_solve, tridiagonal_pivots},
     {bodies_scratch_bytes, bodies_forces, bodies_velocities, bodies_positions},
-    {keep_chains, solve_kept_chains, is_kept, keep_molecules, solve_kept_molecules},
+    {keep_chains, solve_kept_chains, is_kept, kept_scratch_bytes, keep_molecules, solve_kept_molecules},
 #else
     {},
     {},
@@ -51,7 +51,7 @@ const Kernels kernels = {
     {},
     {},
     {},
-    {keep_chains, solve_kept_chains, nullptr, nullptr, nullptr},
+    {keep_chains, solve_kept_chains, nullptr, nullptr, nullptr, nullptr},
 #endif
 };
 

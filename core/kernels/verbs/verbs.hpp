@@ -47,6 +47,7 @@ void molecules_solve(const SolveCall &, const MoleculeUnit &, double *scratch, T
 void keep_chains(const KeepCall &, const Unit &, double *scratch, Tally &);
 void solve_kept_chains(const KeptCall &, const Unit &, double *scratch, Tally &);
 bool is_kept(const EliminationPlan &);
+int64_t kept_scratch_bytes(const EliminationPlan &);
 void keep_molecules(const KeepCall &, const MoleculeUnit &, double *scratch, Tally &);
 void solve_kept_molecules(const KeptCall *, int n_calls, const MoleculeUnit &, double *scratch, Tally &);
 

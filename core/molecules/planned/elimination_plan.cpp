@@ -110,9 +110,19 @@ std::unique_ptr<const EliminationPlan> make_extended_plan(const EliminationPlan 
     return bare_plan(s.n_atoms, s.n_bonds, pairs.data(), s.fixed, most_bytes, EliminationPlanner::extended, work);
 }
 
+namespace {
+std::mutex late_mutex;  // of what is made late
+}  // namespace
+
+void make_list_of_kept(const EliminationPlan &s) {
+    const std::lock_guard<std::mutex> lock(late_mutex);
+    if (s.way.given != Way::large_tree || list_of_kept(s) || !has_short_ldl(s)) return;
+    make_ldl_plan(s, s.memory->of_large().ldl);
+    s.late_ldl = &s.memory->large->ldl.list;
+}
+
 const EliminationPlan &make_extended(const EliminationPlan &s, std::int64_t most_bytes) {
-    static std::mutex mutex;
-    const std::lock_guard<std::mutex> lock(mutex);
+    const std::lock_guard<std::mutex> lock(late_mutex);
     if (!extended_order(s)) {
         s.memory->extended = make_extended_plan(s, most_bytes);
         s.late_extended = s.memory->extended.get();

@@ -33,6 +33,9 @@ std::unique_ptr<const EliminationPlan> make_extended_plan(const EliminationPlan 
 // Thread-safe.
 const EliminationPlan &make_extended(const EliminationPlan &s, std::int64_t most_bytes);
 
+// Makes the list of a large tree that keeps factors by one (list_of_kept()), once. Thread-safe.
+void make_list_of_kept(const EliminationPlan &s);
+
 // Memory that it occupies, in bytes.
 std::size_t bytes_of(const EliminationPlan &s);
 
