@@ -94,6 +94,7 @@ std::unique_ptr<Chains> Factors::those(const unsigned char *left, unsigned char 
 
 void Factors::update(const AtomArray &r) {
     begin();
+    revision_ = -1;  // until all is done
     copy(r, chains_.n_atoms(), r_.data());
     box_ = chains_.box;
     const BoxRate *const rate = chains_.box_rate();
