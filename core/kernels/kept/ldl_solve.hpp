@@ -69,9 +69,9 @@ struct LdlKeptSolve {
         // As in cancelling(), whatever the masses are and how many bonds an atom has.
         const double part = cancelling_part / least_part * s.n_bonds;
         const unsigned number = of & bits(finite(sum));
-        unsigned doubtful = number & ~bits(less_equal(part * most, least)), good = number & ~doubtful;
-        for (; doubtful; doubtful &= doubtful - 1)
-            if (!cancelling(__builtin_ctz(doubtful), T)) good |= doubtful & -doubtful;
+        unsigned flagged = number & ~bits(less_equal(part * most, least)), good = number & ~flagged;
+        for (; flagged; flagged &= flagged - 1)
+            if (!cancelling(__builtin_ctz(flagged), T)) good |= flagged & -flagged;
         return good;
     }
 
