@@ -1,7 +1,6 @@
 #include "Constraints.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <functional>
 #include <string>
 
@@ -13,15 +12,6 @@
 using namespace OpenMM;
 
 namespace {
-
-// Molecules with more entries are solved by a block of threads: on a GPU the registers of one hold no more than a tree
-// of some 32 bonds, and molecules are too few to fill it otherwise; a processor has no such limits, but its compiler
-// takes a minute for larger ones than a tree of some 150.
-std::size_t maxEntriesOfThread(const ComputeContext &device) {
-    const char *const asked = std::getenv("HOLONOMIC_OPENMM_ENTRIES");
-    if (asked) return std::strtoul(asked, nullptr, 10);
-    return device.getIsCPU() ? 300 : 70;
-}
 
 constexpr std::size_t mostAtomsNamed = 20;
 
@@ -59,11 +49,12 @@ std::vector<double> inverseMassesOf(const System &system) {
 
 DeviceConstraints::DeviceConstraints(ComputeContext &device, const System &system, int nThreads)
     : context(device), host(system, nThreads), inverseMasses(inverseMassesOf(system)) {
-    const std::vector<MoleculesOfKind> sorted = sortedByKind(host.chains(), maxEntriesOfThread(device));
-    findMolecules(sorted);
-    launches = std::make_unique<Launches>(device, sorted, inverseMasses);
+    if (!host.chains()) return;
+    launches = std::make_unique<Launches>(device, host.chains());
+    left = launches->leftToHost();
+    findMolecules();
     findAtoms();
-    // Molecules of one kind may change places, as a whole: what stands in the arrays above stays true, and what was
+    // Molecules of one kind may change places, as a whole: what stands in the plan's arrays stays true, and what was
     // told of atoms by their places must be told before.
     context.addReorderListener(new ReorderedAtoms([this] {
         check();
@@ -71,16 +62,14 @@ DeviceConstraints::DeviceConstraints(ComputeContext &device, const System &syste
     }));
 }
 
-void DeviceConstraints::findMolecules(const std::vector<MoleculesOfKind> &onDevice) {
+void DeviceConstraints::findMolecules() {
     moleculeOf.assign(inverseMasses.size(), -1);
-    std::vector<bool> isThere(hol_chains_n_molecules(host.chains()), false);
-    for (const MoleculesOfKind &some : onDevice)
-        for (const Molecule &molecule : some.molecules) {
-            isThere[molecule.number] = true;
-            for (int atom : molecule.atoms) moleculeOf[atom] = molecule.number;
-        }
-    for (std::size_t number = 0; number < isThere.size(); ++number)
-        if (!isThere[number]) left.push_back(static_cast<std::int64_t>(number));
+    for (std::int64_t number = 0; number < hol_chains_n_molecules(host.chains()); ++number) {
+        const std::vector<int> atoms = atomsOf(host.chains(), number);
+        anyAtom.push_back(
+            *std::find_if(atoms.begin(), atoms.end(), [this](int atom) { return inverseMasses[atom] > 0; }));
+        for (int atom : atoms) moleculeOf[atom] = number;
+    }
 }
 
 void DeviceConstraints::findAtoms() {
@@ -88,6 +77,7 @@ void DeviceConstraints::findAtoms() {
 }
 
 void DeviceConstraints::apply(bool toVelocities) {
+    if (!launches) return;
     ContextSelector selector(context);
     if (outsideOfSteps) check();  // a failure of the last steps is none of this call's
     firstStep = std::min(firstStep, context.getStepCount());
@@ -95,23 +85,23 @@ void DeviceConstraints::apply(bool toVelocities) {
     if (outsideOfSteps) {
         int call;
         std::vector<std::int64_t> which;
-        for (int slot : launches->failedSlots(call)) which.push_back(moleculeIn(slot));
+        for (std::int64_t number : launches->failedMolecules(call)) which.push_back(nowAt(number));
         if (!which.empty()) solveOnHost(toVelocities, which);
     }
     if (!left.empty()) solveOnHost(toVelocities, left);
 }
 
-std::int64_t DeviceConstraints::moleculeIn(int slot) const { return moleculeOf[atomOf[launches->firstAtom(slot)]]; }
+std::int64_t DeviceConstraints::nowAt(std::int64_t number) const { return moleculeOf[atomOf[anyAtom[number]]]; }
 
 void DeviceConstraints::check() {
-    if (launches->empty()) return;
+    if (!launches || launches->empty()) return;
     ContextSelector selector(context);
     const long long since = firstStep;
     firstStep = context.getStepCount();
     int call;
-    const std::vector<int> failed = launches->failedSlots(call);
+    const std::vector<std::int64_t> failed = launches->failedMolecules(call);
     if (failed.empty()) return;
-    const std::vector<int> atoms = atomsOf(host.chains(), moleculeIn(failed[0]));
+    const std::vector<int> atoms = atomsOf(host.chains(), nowAt(failed[0]));
     std::string words;
     for (std::size_t k = 0; k < std::min(atoms.size(), mostAtomsNamed); ++k)
         words += (k == 0 ? " " : ", ") + std::to_string(atoms[k]);

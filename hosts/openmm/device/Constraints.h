@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "../Algorithm.h"
-#include "Kinds.h"
 #include "Launches.h"
 #include "openmm/common/ComputeContext.h"
 
@@ -27,10 +26,10 @@ public:
     bool outsideOfSteps = false;
 
 private:
-    void findMolecules(const std::vector<MoleculesOfKind> &onDevice);
+    void findMolecules();
     void findAtoms();
-    // The molecule that is now where the one of the slot began.
-    std::int64_t moleculeIn(int slot) const;
+    // The molecule that is now where the plan has this one.
+    std::int64_t nowAt(std::int64_t number) const;
     void solveOnHost(bool toVelocities, const std::vector<std::int64_t> &which);
 
     ComputeContext &context;
@@ -38,7 +37,8 @@ private:
     std::vector<double> inverseMasses;
     // Molecules by the numbers that the library has given them.
     std::vector<std::int64_t> left;        // for the host
-    std::vector<std::int64_t> moleculeOf;  // of each atom; of those that are not for the device -1
+    std::vector<std::int64_t> moleculeOf;  // of each atom that can move; else any or -1
+    std::vector<int> anyAtom;              // of each molecule, one that can move
     std::vector<int> atomOf;               // the atom that stands at each place of the device's arrays
     std::unique_ptr<Launches> launches;
     long long firstStep = 0;  // since the last check

@@ -1,10 +1,12 @@
-// The kernels of a System's molecules on a device, and the arrays that they read.
+// The kernels of the library's plan on a device, and the arrays that they read.
 #ifndef OPENMM_HOLONOMIC_LAUNCHES_H_
 #define OPENMM_HOLONOMIC_LAUNCHES_H_
 
+#include <holonomic.h>
+
+#include <cstdint>
 #include <vector>
 
-#include "Kinds.h"
 #include "openmm/common/ComputeArray.h"
 #include "openmm/common/ComputeContext.h"
 #include "openmm/common/ComputeKernel.h"
@@ -13,39 +15,27 @@ namespace OpenMM {
 
 class Launches {
 public:
-    Launches(ComputeContext &device, const std::vector<MoleculesOfKind> &sorted,
-             const std::vector<double> &inverseMasses);
+    Launches(ComputeContext &device, const hol_chains *chains);
 
     bool empty() const { return launches.empty(); }
+    // Molecules that the plan leaves to the host.
+    const std::vector<std::int64_t> &leftToHost() const { return left; }
     // Of positions, or of velocities; by the number of the call, from 1 on, molecules that fail are remembered.
     void execute(bool toVelocities, int call);
-    // The molecules that failed in the first call in which one did, by their slots; forgets them.
-    std::vector<int> failedSlots(int &firstCall);
-    // Of the slot's molecule: its place in the device's arrays.
-    int firstAtom(int slot) const { return beginnings[slot]; }
+    // The molecules that failed in the first call in which one did; forgets them.
+    std::vector<std::int64_t> failedMolecules(int &firstCall);
 
 private:
-    struct Data;  // of the arrays below, as they are gathered
-    void takeGroups(const MoleculesOfKind &some, int kind, Data &data);
-    void takeBlocks(const MoleculesOfKind &some, bool inLocalMemory, Data &data);
-    int takeParameters(const Molecule &molecule, int slot, Data &data);
-    void allocate(const Data &data);
-    void addLaunch(const ComputeKernel &positions, const ComputeKernel &velocities, int firstSlot, int lastSlot,
-                   int threadsOfSlot, int blockSize, const std::vector<ArrayInterface *> &own);
-    void launchGroups(const std::vector<MoleculesOfKind> &sorted, std::size_t first, std::size_t last);
-    void launchBlocks(const std::vector<MoleculesOfKind> &sorted, std::size_t first, std::size_t last,
-                      bool inLocalMemory);
+    void allocate(const hol_device_plan *plan);
+    void create(const hol_device_plan *plan);
+    ComputeKernel kernel(const ComputeProgram &program, const char *name, ArrayInterface &state);
 
     ComputeContext &context;
-    const std::vector<double> &inverseMasses;
-    std::vector<int> beginnings;  // the first atom of each slot's molecule; -1: none
-    ComputeArray groups, atoms, parameters, failures, anyFailure;
-    ComputeArray blocks, plans, mixedScratch, realScratch;
-    int firstBlock = 0;  // the slot of the first molecule that a block solves
+    ComputeArray integers, numbers, scratch, failures;
+    std::vector<std::int64_t> left;
     struct Launch {
         ComputeKernel positions, velocities;
-        int firstSlot, lastSlot, threadsOfSlot, blockSize;
-        const ComputeKernel &kernel(bool ofVelocities) const { return ofVelocities ? velocities : positions; }
+        int nThreads, blockSize;
     };
     std::vector<Launch> launches;
 };

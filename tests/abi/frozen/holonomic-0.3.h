@@ -1550,6 +1550,112 @@ HOL_API int hol_tridiagonal_inverse_entry(int64_t n, const double *gamma, int64_
  */
 HOL_API int hol_tridiagonal_inverse_band(int64_t n, const double *gamma, int64_t width, double *band);
 
+/* --------------------------------------------------------------------------------------------------- accelerators */
+
+/**
+ * For a program that keeps its atoms on a GPU: the constraints of a set of molecules as kernels solve them there. A plan
+ * has the kernels' source, in the common subset of OpenCL C, CUDA and HIP, and the arrays that they read. It is made
+ * once, when molecules are set up; the program compiles the source, copies the arrays and launches the kernels in each
+ * step, where it called SHAKE. Nothing waits for the host, and results have the same bits in every run.
+ * examples/device/steps.c is such a program; docs/device.md tells of macros for other layouts of arrays, and of boxes.
+ */
+typedef struct hol_device_plan hol_device_plan;
+
+/** What the kernels calculate with. */
+typedef enum hol_device_precision HOL_IS_INT {
+    HOL_DEVICE_SINGLE = 0, /**< floats: bonds right to some 2e-7 */
+    HOL_DEVICE_MIXED = 1,  /**< arrays and errors are doubles, the matrix is of floats: bonds right to 1e-15 */
+    HOL_DEVICE_DOUBLE = 2  /**< doubles */
+} hol_device_precision;
+
+/** The arrays of a plan, in the order in which all its kernels take them. */
+typedef enum hol_device_array HOL_IS_INT {
+    HOL_DEVICE_INTEGERS = 0, /**< 32-bit integers: kinds of molecules, their atoms, orders of elimination */
+    HOL_DEVICE_NUMBERS = 1,  /**< inverse masses and inverse squares of lengths; floats with HOL_DEVICE_SINGLE, else
+                                  doubles */
+    HOL_DEVICE_SCRATCH = 2,  /**< room for molecules that are too large for local memory; any contents */
+    HOL_DEVICE_FAILURES = 3  /**< 32-bit integers, 0 at first: [0] is 1 if a molecule could not be solved, [1 + m] the
+                                  number of the call in which molecule m (counted from 0) could not for the first time */
+} hol_device_array;
+
+/**
+ * Makes a plan for all molecules of a set, active or not, with the masses and lengths that they have now; it knows
+ * nothing of the set afterwards. Molecules that kernels can't solve are left to the host (hol_device_plan_left): those
+ * with rigid bodies, relations or told images, and those whose elimination takes more than 200 products per bond
+ * (hubs of dozens of bonds, lattices).
+ *
+ * @param[in]  chains       its box is not looked at: HOL_IMAGE in the source, docs/device.md
+ * @param[in]  precision
+ * @param[in]  max_entries  molecules whose matrix has up to so many entries above its diagonal once it is eliminated (a
+ *                          tree of n bonds has n - 1 or more) are solved by a work-item each, larger ones by a
+ *                          work-group. At most 1000; below 0: 70, as suits the registers of GPUs. For a processor's
+ *                          OpenCL 300 is faster.
+ * @param[out] plan         the new plan, to be given to hol_device_plan_destroy; NULL on an error
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (precision, max_entries); HOL_ERR_UNSUPPORTED (more atoms than 32 bits
+ *         count); HOL_ERR_MEMORY. Thread-safe on one set. Since 0.3.
+ */
+HOL_API int hol_device_plan_create(const hol_chains *chains, hol_device_precision precision, int64_t max_entries,
+                                   hol_device_plan **plan);
+
+/** Frees the plan, and all that it has handed out; NULL is allowed and does nothing. Since 0.3. */
+HOL_API void hol_device_plan_destroy(hol_device_plan *plan);
+
+/**
+ * The text of the plan's kernels, to be compiled at run time (clBuildProgram, NVRTC, hipRTC) or written to a file. It
+ * depends on the kinds of molecules and the precision, not on how many there are. NULL if plan is. Since 0.3.
+ *
+ * Each launch has two kernels. Their first arguments are the four arrays of the plan and `int call`, any number but 0 by
+ * which failures are remembered. Unless macros say otherwise there follow, for positions,
+ *     r_ref [n_atoms][3], r [n_atoms][3], v [n_atoms][3], inverse_dt
+ * as in hol_project_positions: r is changed, and v by the change of r times inverse_dt; 0: v is not touched and may be a
+ * null pointer. For velocities
+ *     r [n_atoms][3], v [n_atoms][3]
+ * as in hol_project_velocities: v is changed. All are floats with HOL_DEVICE_SINGLE, else doubles. A molecule that can't
+ * be solved stays as it was.
+ */
+HOL_API const char *hol_device_plan_source(const hol_device_plan *plan);
+
+/**
+ * One array of the plan.
+ * @param[in]  plan
+ * @param[in]  which
+ * @param[out] data   what is to be copied to the device, or NULL: nothing is. Valid until the plan is destroyed
+ * @param[out] bytes  its size, at least 1
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (which). Thread-safe. Since 0.3.
+ */
+HOL_API int hol_device_plan_array(const hol_device_plan *plan, hol_device_array which, const void **data,
+                                  int64_t *bytes);
+
+/** How many launches cover all molecules of the plan: 0 to 4, in any order or at once. 0 if plan is NULL. Since 0.3. */
+HOL_API int64_t hol_device_plan_n_launches(const hol_device_plan *plan);
+
+/**
+ * One launch of the plan; each output may be NULL.
+ * @param[in]  plan
+ * @param[in]  launch      0 .. n_launches - 1
+ * @param[out] positions   name of the kernel that corrects positions. Valid until the plan is destroyed
+ * @param[out] velocities  name of the kernel that corrects velocities
+ * @param[out] n_groups    work-groups (CUDA's blocks) to start; fewer do, too
+ * @param[out] group_size  work-items (CUDA's threads) of each: 64 or 256; fewer do, too
+ * @return HOL_OK; HOL_ERR_NULL (plan); HOL_ERR_VALUE (launch). Thread-safe. Since 0.3.
+ */
+HOL_API int hol_device_plan_launch(const hol_device_plan *plan, int64_t launch, const char **positions,
+                                   const char **velocities, int64_t *n_groups, int64_t *group_size);
+
+/**
+ * How many molecules are left to the host: the ordinary functions solve them, with hol_chains_set_active for these
+ * alone. 0 if plan is NULL. Since 0.3.
+ */
+HOL_API int64_t hol_device_plan_n_left(const hol_device_plan *plan);
+
+/**
+ * Which molecules are left to the host.
+ * @param[in]  plan
+ * @param[out] molecules  [n_left] their numbers, counted as in the set; ascending
+ * @return HOL_OK; HOL_ERR_NULL. Thread-safe. Since 0.3.
+ */
+HOL_API int hol_device_plan_left(const hol_device_plan *plan, int64_t *molecules);
+
 /* -------------------------------------------------------------------------------------------- partition functions */
 
 /**

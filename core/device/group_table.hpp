@@ -1,17 +1,16 @@
-// What a block of threads needs to know of a kind of molecules: where each number of its elimination comes from.
-#ifndef OPENMM_HOLONOMIC_BLOCKPLAN_H_
-#define OPENMM_HOLONOMIC_BLOCKPLAN_H_
+// What a work-group needs to know of a kind of molecules: where each number of its elimination comes from.
+#pragma once
 
 #include <vector>
 
-#include "Kinds.h"
+#include "core/device/kinds.hpp"
 
-namespace OpenMM {
+namespace holonomic::device {
 
-// The parts of a plan, by the names that they have in the kernels. It begins with the place of each of them in it.
+// The parts of a table, by the names that they have in the kernels. It begins with the place of each of them in it.
 // Bonds and entries are numbered in the order of the elimination; an atom with a sign is its number + 1, negative where
 // it is the second of its bond, or ends one bond of an entry and begins the other.
-constexpr const char *partsOfPlan[] = {
+constexpr const char *parts_of_table[] = {
     "SIZES",            // atoms, bonds, levels
     "ENDS",             // the two atoms of each bond
     "LEVELS",           // where each level of bonds begins, and the end
@@ -26,8 +25,6 @@ constexpr const char *partsOfPlan[] = {
     "BONDS_OF_ATOMS",   // a bond + 1, negative where the atom is its second
 };
 
-std::vector<int> blockPlan(const Kind &kind);
+std::vector<int> group_table(const Kind &kind);
 
-}  // namespace OpenMM
-
-#endif
+}  // namespace holonomic::device
