@@ -102,6 +102,7 @@ void Writer::factorize(bool with_right_side) {
 }
 
 void Writer::forward(int k) {
+    if (later_[at(k)].empty()) return;
     out_ << "{ const real t = i" << k << "*g" << k << ";";
     for (const int row : later_[at(k)]) out_ << " g" << row << " -= " << m(row, k) << "*t;";
     out_ << " }\n";

@@ -24,8 +24,8 @@ const char languages[] = R"(
 
 #ifdef KERNEL
 /* The program has all these words already. */
-#elif defined(__OPENCL_VERSION__)
-#if !defined(HOL_SINGLE) && __OPENCL_VERSION__ < 120
+#elif defined(__OPENCL_VERSION__) || defined(__OPENCL_C_VERSION__)
+#if !defined(HOL_SINGLE) && defined(cl_khr_fp64)
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 #endif
 #define KERNEL __kernel
