@@ -7,12 +7,12 @@ namespace {
 // Types and words by which kernels are written alike for all three. CUDA's vectors have no operators, so that it and
 // HIP get three numbers of our own.
 const char languages[] = R"(
-#ifdef HOL_DOUBLE
+#ifdef HOL_IN_DOUBLE
 #define HOL_REAL double
 #else
 #define HOL_REAL float
 #endif
-#ifdef HOL_SINGLE
+#ifdef HOL_IN_SINGLE
 #define HOL_MIXED_REAL float
 #define HOL_ROUNDING 1.2e-7f
 #else
@@ -25,7 +25,7 @@ const char languages[] = R"(
 #ifdef KERNEL
 /* The program has all these words already. */
 #elif defined(__OPENCL_VERSION__) || defined(__OPENCL_C_VERSION__)
-#if !defined(HOL_SINGLE) && defined(cl_khr_fp64)
+#if !defined(HOL_IN_SINGLE) && defined(cl_khr_fp64)
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 #endif
 #define KERNEL __kernel
@@ -127,7 +127,9 @@ const char common[] = R"(
 )";
 
 const char *name(Precision precision) {
-    return precision == Precision::single ? "HOL_SINGLE" : precision == Precision::mixed ? "HOL_MIXED" : "HOL_DOUBLE";
+    return precision == Precision::single  ? "HOL_IN_SINGLE"
+           : precision == Precision::mixed ? "HOL_IN_MIXED"
+                                           : "HOL_IN_DOUBLE";
 }
 
 }  // namespace

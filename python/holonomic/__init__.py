@@ -13,6 +13,7 @@
 from . import tridiagonal
 from ._library import instruction_set, version
 from ._queries import Molecule
+from .device import DevicePlan, Launch
 from .errors import (ArgumentError, DegenerateError, Error, LengthsError, LengthsWarning, MasslessWarning,
                      NoConvergenceError, NotDefiniteError, NotFiniteError, NumberError, OutOfMemoryError, ReferenceWarning,
                      SharedAtomError, StateError, UnsupportedError)
@@ -25,7 +26,7 @@ from .results import Forces, Impulse, Metric, Outcomes, Reactions, Report, Viola
 
 __version__ = "0.3.0"
 __all__ = [
-    "ArgumentError", "DegenerateError", "Error", "Factors", "Forces", "Impulse", "Inverse", "LengthsError",
+    "ArgumentError", "DegenerateError", "DevicePlan", "Error", "Factors", "Forces", "Impulse", "Inverse", "Launch", "LengthsError",
     "LengthsWarning", "MasslessWarning", "Metric", "Molecule", "Molecules", "NoConvergenceError", "NotDefiniteError",
     "NotFiniteError", "NumberError", "OutOfMemoryError", "Outcomes", "PartitionFunction", "Reactions",
     "ReferenceWarning", "Report", "SharedAtomError",

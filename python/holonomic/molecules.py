@@ -12,6 +12,7 @@ from ._arrays import NotPacked, address, dimensions, number, numbers, output, vi
 from ._library import bare, library
 from ._settings import Settings
 from ._types import Array, Floats, Integers
+from .device import DevicePlan, make_plan
 from .errors import ArgumentError, ReferenceWarning, ask, fail
 from .factors import Factors
 from .inverse import Inverse
@@ -283,6 +284,14 @@ class Molecules(Settings):
     def factors(self, r: Floats) -> Factors:
         """The factors of all molecules at positions r (n_atoms, 3), for any number of right-hand sides."""
         return Factors(self, r)
+
+    def device_plan(self, precision: str, max_entries: int = -1) -> DevicePlan:
+        """What kernels need to solve the constraints of all molecules on a GPU, in "single", "mixed" or "double" precision.
+
+        Molecules with more than max_entries entries above the diagonal of their eliminated matrix take a work-group each, not a
+        work-item; below 0: 70, as suits GPUs.
+        """
+        return make_plan(self._handle, precision, max_entries)
 
     def __repr__(self) -> str:
         return (f"<holonomic.Molecules: {counted(self.n_molecules, 'molecule')} with {counted(self._n_bonds, 'bond')}, "

@@ -307,6 +307,27 @@ static void kept(const hol_chains *chains)
     EXPECT(hol_error_remember(HOL_ERR_VALUE, "mine") == HOL_ERR_VALUE && strcmp(hol_error_message(), "mine") == 0);
 }
 
+/* A plan for an accelerator. */
+static void plan(const hol_chains *chains)
+{
+    const void *data = NULL;
+    const char *positions = NULL, *velocities = NULL;
+    int64_t bytes = 0, n_groups = 0, group_size = 0, left = 7;
+    hol_device_plan *made = NULL;
+    SUCCEEDS(hol_device_plan_create(chains, HOL_DEVICE_DOUBLE, -1, &made));
+    EXPECT(strstr(hol_device_plan_source(made), "hol_positions_0") != NULL);
+    SUCCEEDS(hol_device_plan_array(made, HOL_DEVICE_FAILURES, &data, &bytes));
+    EXPECT(bytes == 8 && ((const int32_t *)data)[0] == 0);
+    EXPECT(hol_device_plan_n_launches(made) == 1);
+    SUCCEEDS(hol_device_plan_launch(made, 0, &positions, &velocities, &n_groups, &group_size));
+    EXPECT(strcmp(positions, "hol_positions_0") == 0 && strcmp(velocities, "hol_velocities_0") == 0);
+    EXPECT(n_groups == 1 && group_size == 64);
+    EXPECT(hol_device_plan_n_left(made) == 0);
+    SUCCEEDS(hol_device_plan_left(made, &left));
+    EXPECT(left == 7);
+    hol_device_plan_destroy(made);
+}
+
 /* Two rods of two atoms, and one that hangs at a fixed atom. */
 static void bodies(void)
 {
@@ -413,6 +434,7 @@ int main(void)
     handles(chains);
     given(chains);
     kept(chains);
+    plan(chains);
     forces(chains);
     velocities(chains);
     positions(chains);

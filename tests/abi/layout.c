@@ -46,6 +46,13 @@ static void enum_values_are_frozen(void)
     IS(HOL_ALWAYS, 2);
     IS(HOL_DOUBLE, 0);
     IS(HOL_FLOAT, 1);
+    IS(HOL_DEVICE_SINGLE, 0);
+    IS(HOL_DEVICE_MIXED, 1);
+    IS(HOL_DEVICE_DOUBLE, 2);
+    IS(HOL_DEVICE_INTEGERS, 0);
+    IS(HOL_DEVICE_NUMBERS, 1);
+    IS(HOL_DEVICE_SCRATCH, 2);
+    IS(HOL_DEVICE_FAILURES, 3);
     IS(HOL_WRITE, 0);
     IS(HOL_ADD, 1);
     IS(HOL_BOX, 0);

@@ -9,7 +9,7 @@ import holonomic as hol
 from holonomic import _library
 
 SOURCE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
-LETTERS = {**dict.fromkeys(("hol_bodies", "hol_mode", "hol_scaling", "hol_shape", "hol_when", "hol_which_box"), "i"), "int": "i", "void": "-", "int64_t": "l", "const char *": "s", "double": "d"}
+LETTERS = {**dict.fromkeys(("hol_bodies", "hol_device_array", "hol_device_precision", "hol_mode", "hol_scaling", "hol_shape", "hol_when", "hol_which_box"), "i"), "int": "i", "void": "-", "int64_t": "l", "const char *": "s", "double": "d"}
 
 
 def prototypes():
