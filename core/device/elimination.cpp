@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <set>
+#include <iterator>
 #include <tuple>
 #include <utility>
 
@@ -13,28 +13,37 @@ namespace holonomic::device {
 namespace {
 
 using Pairs = std::vector<std::pair<int, int>>;
-using Neighbours = std::vector<std::set<int>>;
+using Neighbours = std::vector<std::vector<int>>;  // of each bond, ascending
 
 Neighbours bonds_that_share_atoms(int n_atoms, const Pairs &bonds) {
-    std::vector<std::vector<int>> bonds_at(at(n_atoms));
-    Neighbours near(bonds.size());
+    Neighbours bonds_at(at(n_atoms)), near(bonds.size());
     for (int k = 0; k < static_cast<int>(bonds.size()); ++k)
-        for (const int atom : {bonds[at(k)].first, bonds[at(k)].second}) {
-            for (const int other : bonds_at[at(atom)]) {
-                near[at(k)].insert(other);
-                near[at(other)].insert(k);
-            }
-            bonds_at[at(atom)].push_back(k);
-        }
+        for (const int atom : {bonds[at(k)].first, bonds[at(k)].second}) bonds_at[at(atom)].push_back(k);
+    for (int k = 0; k < static_cast<int>(bonds.size()); ++k) {
+        const auto &one = bonds_at[at(bonds[at(k)].first)], &other = bonds_at[at(bonds[at(k)].second)];
+        std::set_union(one.begin(), one.end(), other.begin(), other.end(), std::back_inserter(near[at(k)]));
+        near[at(k)].erase(std::lower_bound(near[at(k)].begin(), near[at(k)].end(), k));
+    }
     return near;
+}
+
+int n_common(const std::vector<int> &one, const std::vector<int> &other) {
+    int n = 0;
+    for (auto a = one.begin(), b = other.begin(); a != one.end() && b != other.end();) {
+        n += *a == *b;
+        const int last = std::min(*a, *b);
+        a += *a == last;
+        b += *b == last;
+    }
+    return n;
 }
 
 // How many pairs of a bond's neighbours get an entry when it is eliminated.
 int filled(const Neighbours &near, int bond) {
-    int n = 0;
-    for (const int one : near[at(bond)])
-        for (const int other : near[at(bond)]) n += one < other && !near[at(one)].count(other);
-    return n;
+    const int n = static_cast<int>(near[at(bond)].size());
+    int ordered = n * (n - 1);
+    for (const int one : near[at(bond)]) ordered -= n_common(near[at(one)], near[at(bond)]);
+    return ordered / 2;
 }
 
 // Products that any order takes at least: all bonds of an atom have entries with each other.
@@ -63,9 +72,12 @@ public:
         ordered_.push_back(kind_.bonds[at(bond)]);
         for (const int k : near[at(bond)]) {
             entries_.emplace_back(bond, k);
-            near[at(k)].erase(bond);
-            for (const int other : near[at(bond)])
-                if (other != k) near[at(k)].insert(other);
+            joined_.clear();
+            std::set_union(near[at(k)].begin(), near[at(k)].end(), near[at(bond)].begin(), near[at(bond)].end(),
+                           std::back_inserter(joined_));
+            joined_.erase(std::remove_if(joined_.begin(), joined_.end(), [&](int n) { return n == bond || n == k; }),
+                          joined_.end());
+            near[at(k)] = joined_;
         }
     }
     // Of all bonds: writes it into the kind, and gives the place of each.
@@ -81,7 +93,7 @@ public:
 
 private:
     Kind &kind_;
-    std::vector<int> place_;
+    std::vector<int> place_, joined_;
     Pairs ordered_, entries_;
 };
 
@@ -115,6 +127,12 @@ std::vector<int> eliminate_by_levels(Kind &kind) {
     std::vector<int> levels{0}, level_of_neighbour(at(n), -1);
     std::int64_t n_products = 0;
     while (levels.back() < n) {
+        std::int64_t ahead =
+            0;  // if all that is left had its entries with each other, this would be thrice the products
+        for (int k = 0; k < n; ++k)
+            if (!order.is_placed(k))
+                ahead += static_cast<std::int64_t>(order.near[at(k)].size() * order.near[at(k)].size());
+        if (n_products + ahead / 3 > most) return {};
         std::vector<std::tuple<int, std::size_t, int>> left;  // by fill, then by neighbours
         for (int k = 0; k < n; ++k)
             if (!order.is_placed(k)) left.emplace_back(filled(order.near, k), order.near[at(k)].size(), k);
@@ -128,7 +146,6 @@ std::vector<int> eliminate_by_levels(Kind &kind) {
             order.add(k);
             ++levels.back();
         }
-        if (n_products > most) return {};
     }
     kind.levels = levels;
     return order.finished();
