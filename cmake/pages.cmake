@@ -2,7 +2,7 @@
 # Pages for whoever works on the library stay in the tree; links to what is not installed become their words.
 
 set(pages README CHANGELOG docs/reference/tasks docs/benchmarks python/README examples/README examples/python/tutorial/README)
-foreach(name start promises recipes integrators molecules rigid metric theory linking systems fortran fortran_reference python porting stability
+foreach(name start promises recipes integrators molecules rigid metric device theory linking systems fortran fortran_reference python porting stability
         performance abi)
     list(APPEND pages docs/${name})
 endforeach()

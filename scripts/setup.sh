@@ -85,6 +85,8 @@ int main() { OpenMM::System system; }' | c++ -x c++ - -lOpenMM -o /dev/null 2>/d
         ase) [ -n "$(python_with numpy, ase)" ] ;;
         pytest) [ -n "$(python_with pytest)" ] ;;
         openmm-python) [ -n "$(python_with numpy, openmm)" ] ;;
+        opencl-dev) echo '#include <CL/cl.h>
+int main(void) { return clGetPlatformIDs(0, 0, 0); }' | cc -x c -DCL_TARGET_OPENCL_VERSION=120 - -lOpenCL -o /dev/null 2>/dev/null ;;
         opencl) ls /etc/OpenCL/vendors/*.icd >/dev/null 2>&1 ;;
         venv) [ -n "$(python_with numpy, venv, ensurepip)" ] ;;
         setuptools) [ -n "$(python_with setuptools, wheel, pip)" ] ;;
@@ -138,6 +140,7 @@ debian_package() {
         sphinx) echo python3-numpy python3-sphinx python3-myst-parser python3-sphinx-rtd-theme ;;
         openmm-python) echo python3-numpy "$(newest_package '^python3-(simtk|openmm)$' python3-openmm)" libopenmm-plugins ;;
         opencl) echo pocl-opencl-icd ;; # on the processor
+        opencl-dev) echo ocl-icd-opencl-dev ;;
         ninja) echo ninja-build ;;
         openblas | mctc-lib) echo "lib$1-dev" ;;
         abidiff) echo abigail-tools ;;
