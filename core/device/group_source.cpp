@@ -236,10 +236,15 @@ const char velocities[] = R"(
         }
 )";
 
-// Names that the launches have for themselves: with those of the address space of their molecules' room.
+// Words of these kernels alone: a program that goes on behind the text may have its own of these names.
+const char *const short_names[] = {"MOLECULE", "THE_MOLECULE", "N_ATOMS",   "N_BONDS", "N_LEVELS",
+                                   "EACH",     "KEEP_LARGER",  "SOLVED",    "FIRST",   "GROUP",
+                                   "ROOM",     "SCRATCH_ARG",  "SYMMETRIC", "READ",    "WRITE"};
+
+std::string undefined(const std::string &name) { return "#undef " + name + "\n"; }
+
 std::string redefined(const std::string &name, const std::string &as) {
-    const std::string bare = name.substr(0, name.find('('));
-    return "#undef " + bare + "\n#define " + name + " " + as + "\n";
+    return undefined(name.substr(0, name.find('('))) + "#define " + name + " " + as + "\n";
 }
 
 }  // namespace
@@ -252,16 +257,21 @@ std::string group_kernels(int launch, int group_size, int room) {
     int part = 0;
     for (const char *const name : parts_of_table)
         text += redefined(name, "(table + table[" + std::to_string(part++) + "])");
-    text += std::string(solution) + residuals;
+    text += solution;
+    text += residuals;
     for (const bool of_velocities : {false, true}) {
-        const std::string what = of_velocities ? "VELOCITY" : "POSITION";
-        text += redefined("SYMMETRIC", of_velocities ? "1" : "0") +
-                redefined("READ(a)", of_velocities ? "HOL_VELOCITY(a)" : "HOL_DISPLACEMENT(a)") +
-                redefined("WRITE(a, before, after)",
-                          of_velocities ? "HOL_SET_VELOCITY(a, before, after)" : "HOL_DISPLACE(a, before, after)") +
-                "KERNEL void " + (of_velocities ? "hol_velocities_" : "hol_positions_") + number + "(HOL_PLAN, HOL_" +
-                what + "_ARRAYS) {" + kernel_begin + (of_velocities ? velocities : positions) + kernel_end;
+        text += redefined("SYMMETRIC", of_velocities ? "1" : "0");
+        text += redefined("READ(a)", of_velocities ? "HOL_VELOCITY(a)" : "HOL_DISPLACEMENT(a)");
+        text += redefined("WRITE(a, before, after)",
+                          of_velocities ? "HOL_SET_VELOCITY(a, before, after)" : "HOL_DISPLACE(a, before, after)");
+        text += of_velocities ? "KERNEL void hol_velocities@(HOL_PLAN, HOL_VELOCITY_ARRAYS) {"
+                              : "KERNEL void hol_positions@(HOL_PLAN, HOL_POSITION_ARRAYS) {";
+        text += kernel_begin;
+        text += of_velocities ? velocities : positions;
+        text += kernel_end;
     }
+    for (const char *const name : parts_of_table) text += undefined(name);
+    for (const char *const name : short_names) text += undefined(name);
     for (std::size_t mark; (mark = text.find('@')) != std::string::npos;) text.replace(mark, 1, "_" + number);
     return text;
 }

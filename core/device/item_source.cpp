@@ -192,7 +192,7 @@ std::string item_kernels(int launch, const std::vector<Sorted::OfKind> &kinds, i
         }
         text += kernel_end;
     }
-    return text;
+    return text + "#undef FIRST\n";
 }
 
 }  // namespace holonomic::device
