@@ -25,7 +25,7 @@ namespace rigid {
 class Bodies;
 struct Cliques;
 struct Given;
-struct LooseParts;
+struct AffineParts;
 }  // namespace rigid
 
 // What a bond is. The values are those of hol_role, which capi/queries.cpp asserts.
@@ -154,7 +154,7 @@ public:
     Unit unit(const Plan &plan, const Plan::Chunk &chunk, Lane *lane) const;  // lane: memory for the first of a group
     MoleculeUnit unit(const Plan &plan, const Plan::Chunk &chunk, MoleculeLane *lane) const;
     MoleculeUnit unit_of_group(const Plan &plan, const Plan::Chunk &chunk, MoleculeLane *lane) const;
-    std::int64_t chunk_bonds(const Plan::Chunk &chunk) const;  // of one molecule of the chunk; 0 if loose ones
+    std::int64_t chunk_bonds(const Plan::Chunk &chunk) const;  // of one molecule of the chunk; 0 if gathered ones
     const std::vector<std::int64_t> &reordered_bonds() const { return groups_.reordered(); }
     const std::vector<std::int64_t> &unconstrained() const { return unconstrained_; }
     // Whether a bond was given from the atom at which it ends here; by its place in the caller's arrays.
@@ -216,14 +216,14 @@ private:
     std::vector<rigid::Given> sort_rigid(std::int64_t n_bodies, const std::int64_t *sizes, const std::int64_t *atoms,
                                          std::int64_t offset, const double *places, std::int64_t n_bonds,
                                          const std::int64_t *pairs, const double *lengths,
-                                         const rigid::LooseParts *parts = nullptr) const;
+                                         const rigid::AffineParts *parts = nullptr) const;
     // `also`, of another addition in the same call: done when nothing else can fail but it.
     void commit_rigid(const std::vector<rigid::Given> &molecules, std::int64_t n_bonds, Batch *also = nullptr);
     // Bond k of the list has the length lengths[k % n_lengths]. Parts that depend become bodies (rigid/cliques.hpp).
     void add_listed(const BondList &list, const double *lengths, std::int64_t n_lengths);
     void add_with_bodies(const BondList &list, const double *lengths, std::int64_t n_lengths);
-    rigid::LooseParts take_linear(const BondList &list, const double *lengths, std::int64_t n_lengths,
-                                  rigid::Cliques &cliques, std::vector<unsigned char> &implied) const;
+    rigid::AffineParts take_linear(const BondList &list, const double *lengths, std::int64_t n_lengths,
+                                   rigid::Cliques &cliques, std::vector<unsigned char> &implied) const;
     std::unique_ptr<rigid::Bodies> rebuild_bodies(const Masses &masses, const double *lengths) const;
     double longest() const;
     template <class Each>

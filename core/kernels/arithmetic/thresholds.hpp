@@ -23,11 +23,11 @@ constexpr double small_cosine = 1.0 / 32;
 constexpr double segment_cosine = HOL_HAS_FMA && W > 1 ? 1.0 / 64 : 1.0 / 32;
 
 // Chains (9): of the pivots w sin^2 + E there must be so much E, or the joint's cross product may be wrong by so many
-// roundings of what it is added to (eliminate/remainder.hpp has the three tests).
-constexpr double least_remainder = 1.0 / 4;
+// roundings of what it is added to (eliminate/effective_mass.hpp has the three tests).
+constexpr double least_effective_mass = 1.0 / 4;
 constexpr double joint_tolerance = 8;
 constexpr double spare_of_cross_products = 4 * joint_tolerance * joint_tolerance;
-// Where segments of a long chain are joined, c (20) is such a remainder, seen from the far end.
+// Where segments of a long chain are joined, c (20) is such an effective inverse mass, seen from the far end.
 constexpr double join_tolerance = joint_tolerance;
 
 // Trees (52): the part of a diagonal element that its pivot must keep, so that subtraction loses four bits at most.

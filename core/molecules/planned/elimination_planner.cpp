@@ -82,7 +82,7 @@ void EliminationPlanner::hang_from_leaf(std::int32_t centre) {
 
 // The trees below the atoms that were not taken away, from the last slot to the first. Of molecules that go in lanes
 // level by level, so that what waits for each other is far apart and the children of all atoms follow each other. Of
-// large ones each atom is followed by all that hangs from it, so that a piece of the slots is connected.
+// large ones each atom is followed by all that hangs from it, so that a tile of the slots is connected.
 void EliminationPlanner::number_trees() {
     Numbers &order = m_.stack, &left = m_.next;
     const auto add_children = [&](std::int32_t i, Numbers &to) {

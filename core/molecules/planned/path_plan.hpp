@@ -12,8 +12,8 @@ namespace holonomic {
 
 struct PathArrays {
     std::vector<PathPlan::Path> path;
-    std::vector<PathPlan::Piece> piece;
-    std::vector<PathPlan::Kind> kind;
+    std::vector<PathPlan::Section> section;
+    std::vector<PathPlan::JunctionKind> kind;
     std::vector<PathPlan::Overlap> overlap;
     Numbers atom, bond;
     std::vector<std::unique_ptr<const EliminationPlan>> elimination;

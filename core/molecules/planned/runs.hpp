@@ -9,9 +9,9 @@
 namespace holonomic {
 
 struct TreeRuns {
-    std::vector<EliminationPlan::Run> run;
-    std::vector<std::int32_t> slot, piece_start;
-    EliminationPlan::Runs runs() const { return {run.data(), slot.data(), piece_start.data()}; }
+    std::vector<EliminationPlan::AtomRun> run;
+    std::vector<std::int32_t> slot, tile_start;
+    EliminationPlan::Runs runs() const { return {run.data(), slot.data(), tile_start.data()}; }
 };
 
 // From the parents and the children of an elimination plan. Takes O(n).

@@ -36,7 +36,7 @@ void choose_ways(EliminationPlan &s);
 
 // Whether different trees may share lanes with this one.
 bool mixes(const EliminationPlan &s);
-// Whether threads can share one molecule beyond the pieces of a tree; `paths`: positions.
+// Whether threads can share one molecule beyond the tiles of a tree; `paths`: positions.
 bool has_shares(const EliminationPlan &s, bool paths);
 
 }  // namespace holonomic

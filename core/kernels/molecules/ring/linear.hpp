@@ -13,7 +13,7 @@
 namespace holonomic::HOL_ISA::graph {
 
 template <class V>
-struct Ring {
+struct RingLinear {
     V *to_last;  // [n_core] what the last row gets of y of each, and each of the last one's t
     V *reach;  // for every atom of the ring: the same of its children with the bond before it, then with the one behind
     static int64_t values(const EliminationPlan &s) { return s.n_core + 2 * static_cast<int64_t>(s.n_tree); }
@@ -125,7 +125,7 @@ HOL_INLINE RingJoint<V> up_ring_joint(const Molecules<V> &x, int32_t before, int
 
 // From right-hand sides to u of the ring and of the children of its atoms, all in t of the rows.
 template <bool bare, class V>
-static inline void up_ring(Molecules<V> &x, const Ring<V> &ring) {
+static inline void up_ring(Molecules<V> &x, const RingLinear<V> &ring) {
     V *reach = ring.reach, *to_last = ring.to_last;
     RingPivots<V> pivots = {}, lowered = {};
     V carried = {}, y_of_last = {}, margin = x.margin;
@@ -173,7 +173,7 @@ static inline void up_ring(Molecules<V> &x, const Ring<V> &ring) {
 
 // The same for another right-hand side.
 template <bool bare, class V>
-static inline void substitute_ring(const Molecules<V> &x, const Ring<V> &ring) {
+static inline void substitute_ring(const Molecules<V> &x, const RingLinear<V> &ring) {
     const V *reach = ring.reach, *to_last = ring.to_last;
     V carried = {}, y_of_last = {};
     const int32_t first = bare ? 0 : x.s.n_tree;
@@ -234,7 +234,7 @@ HOL_INLINE void look_at_ring_atom(Molecules<V> &x, int32_t before, int32_t slot,
 
 // From u to t of the ring and of its atoms' children. `look`: tests the result, as down_joint() does.
 template <bool look, bool bare, class V>
-static inline void down_ring(Molecules<V> &x, const Ring<V> &ring) {
+static inline void down_ring(Molecules<V> &x, const RingLinear<V> &ring) {
     const EliminationPlan &s = x.s;
     const V *reach = ring.reach + 2 * static_cast<int64_t>(s.n_tree - s.child_start[s.n_tree]);
     const V last = x.row[s.n_bonds - 1].t, *to_last = ring.to_last + s.n_core - 1;

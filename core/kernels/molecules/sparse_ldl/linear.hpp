@@ -175,7 +175,7 @@ struct LdlLinear {
                 q[i] = bond * bond;
             }
             const Columns<V> square = sums_of(q), of_ends = masses_at<V>(w + tile.first_site, s.from + row, s.to + row);
-            some(t, k) = sides_of(tile, k, terms);
+            some(t, k) = right_hand_sides_of(tile, k, terms);
             some(per_pivot, k) = some(diagonal, k - tile.first) = of_ends * square;
             some(size, k) = root_of(square);
         }
@@ -186,11 +186,11 @@ struct LdlLinear {
     __attribute__((noinline)) void load_sides(const Tile &tile) const {
         if (terms & squares) read_atoms(*in.v, at, s, tile, v);
         load_inputs(tile);
-        for (int64_t k = tile.first; k < tile.end; k += step) some(t, k) = sides_of(tile, k, terms);
+        for (int64_t k = tile.first; k < tile.end; k += step) some(t, k) = right_hand_sides_of(tile, k, terms);
         if (terms & given) add_given(tile, t);
     }
     // What velocities and inputs give to the right-hand sides of columns k ..
-    HOL_FORCED Columns<V> sides_of(const Tile &tile, int64_t k, int wanted) const {
+    HOL_FORCED Columns<V> right_hand_sides_of(const Tile &tile, int64_t k, int wanted) const {
         const int64_t row = tile.first_row + (k - tile.first);
         const int32_t *const from = s.from + row, *const to = s.to + row;
         const Rows<V> of = a_of(tile);
