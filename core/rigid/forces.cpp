@@ -6,6 +6,7 @@
 #include "core/rigid/run.hpp"
 #include "core/rigid/verbs.hpp"
 #include "core/rigid/within.hpp"
+#include "core/run/execute.hpp"
 #include "core/run/kernel_choice.hpp"
 
 namespace holonomic::rigid {
@@ -156,11 +157,6 @@ struct BodySolve final : BodyWork {
         return outcome;
     }
 };
-
-void add_virial(const Tally &tally, double *virial) {
-    const int element[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
-    for (int i = 0; i < 9; ++i) virial[i] += tally.virial[element[i]];
-}
 
 }  // namespace
 

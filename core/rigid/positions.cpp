@@ -6,6 +6,7 @@
 #include "core/rigid/run.hpp"
 #include "core/rigid/verbs.hpp"
 #include "core/rigid/within.hpp"
+#include "core/run/execute.hpp"
 #include "core/run/kernel_choice.hpp"
 
 namespace holonomic::rigid {
@@ -211,8 +212,7 @@ void project_positions(const Chains &chains, const AtomArray &r_ref, const AtomA
                       BodyPositions(chains, r_ref, chains.box_of_reference(), r, v, dt, lambda, virial != nullptr,
                                     report != nullptr, chains.checks() != Checks::never),
                       report);
-    const int element[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
-    for (int i = 0; virial && i < 9; ++i) virial[i] += tally.virial[element[i]];
+    if (virial) add_virial(tally, virial);
 }
 
 void impose(const Chains &chains, const AtomArray &r, Report *report) {

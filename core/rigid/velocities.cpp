@@ -5,6 +5,7 @@
 #include "core/rigid/run.hpp"
 #include "core/rigid/verbs.hpp"
 #include "core/rigid/within.hpp"
+#include "core/run/execute.hpp"
 #include "core/run/kernel_choice.hpp"
 
 namespace holonomic::rigid {
@@ -87,8 +88,7 @@ void project_velocities(const Chains &chains, const AtomArray &r, const AtomArra
         const Named arrays[] = {{"position", &r}, {"velocity", &v}};
         throw error_of(chains, found, arrays, 2);
     }
-    const int element[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
-    for (int i = 0; virial && i < 9; ++i) virial[i] += found.tally.virial[element[i]];
+    if (virial) add_virial(found.tally, virial);
 }
 
 }  // namespace holonomic::rigid

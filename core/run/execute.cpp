@@ -6,8 +6,8 @@
 #include <new>
 
 #include "core/error.hpp"
-#include "core/kernels/molecules/tree_batch/batch.hpp"
 #include "core/molecules/planned/way.hpp"
+#include "core/kernels/molecules/tree_batch/batch.hpp"
 #include "core/run/lane.hpp"
 #include "core/run/outcomes.hpp"
 #include "core/run/thread_memory.hpp"
@@ -356,8 +356,13 @@ void write_virial(const double *sum, double *virial) {
 
 void write_virial(const Tally &tally, double *virial) {
     refuse_infinite_virial<6>(tally.virial);
-    const int place[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
-    for (int i = 0; i < 9; ++i) virial[i] = tally.virial[place[i]];
+    std::fill(virial, virial + 9, 0.0);
+    add_virial(tally, virial);
+}
+
+void add_virial(const Tally &tally, double *virial) {
+    constexpr int sum_of_element[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
+    for (int i = 0; i < 9; ++i) virial[i] += tally.virial[sum_of_element[i]];
 }
 
 void execute(const Chains &chains, const Plan &plan, const Work &work, Tally &tally) {

@@ -141,12 +141,4 @@ HOL_INLINE vec3 load_atom(const Packed &p) {
     return a;
 }
 
-// The atoms k0 + 1 .. k0 + W where lanes may end. Vectors behind an end have any value.
-HOL_NOINLINE void load_ragged_atoms(const Block &block, const Packed &p, long k0, vec3 *atoms) {
-    double buffer[W][3 * W + 3];
-    const double *from[W];
-    for (int i = 0; i < W; ++i) from[i] = window(p.lane[i], k0, block.len[i], block.padded, buffer[i]) + 3;
-    load_atoms(from, atoms + k0 + 1);
-}
-
 }  // namespace holonomic::HOL_ISA
