@@ -171,16 +171,17 @@ static inline void up_ring(Molecules<V> &x, const RingLinear<V> &ring) {
     row.t = row.E = (row.t + y_of_last) * row.r;
 }
 
-// The same for another right-hand side.
-template <bool bare, class V>
-static inline void substitute_ring(const Molecules<V> &x, const RingLinear<V> &ring) {
-    const V *reach = ring.reach, *to_last = ring.to_last;
+// The same for another right-hand side, of forces and velocities or of Newton's method. to_next(row): the multiplier of
+// a row of the ring in the one behind it. joint(rows, known): substitutes the children of an atom.
+template <bool bare, class Rows, class V, class System, class ToNext, class Joint>
+HOL_INLINE void substitute_ring(const System &x, const V *reach, const V *to_last, const ToNext &to_next,
+                                const Joint &joint) {
     V carried = {}, y_of_last = {};
     const int32_t first = bare ? 0 : x.s.n_tree;
     for_ring<bare>(x.s, [&](int32_t before, int32_t slot, int k) HOL_FORCED {
         choose_number<0, bare ? 0 : most_on_ring>(k, [&](auto known) HOL_FORCED {
             if constexpr (known > 0) {
-                const AtomRows<V> rows(x, slot);
+                const Rows rows(x, slot);
                 V y_to = x.row[before].t, y_from = x.row[slot].t;
                 for (int a = 0; a < known; ++a) {
                     y_to = mul_add(reach[a], rows.bond(a).t, y_to);
@@ -189,18 +190,25 @@ static inline void substitute_ring(const Molecules<V> &x, const RingLinear<V> &r
                 reach += 2 * known;
                 x.row[before].t = y_to;
                 x.row[slot].t = y_from;
-                substitute_joint<known, true>(rows, known, Memory<V>());
+                joint(rows, known);
             }
         });
         if (slot == first) return;
-        BondRow<V> &row = x.row[before];
+        auto &row = x.row[before];
         const V y = row.t + carried;
         y_of_last = mul_add(*to_last++, y, y_of_last);
-        carried = row.l * y;
+        carried = to_next(row) * y;
         row.t = y * row.r;
     });
-    BondRow<V> &row = x.row[x.s.n_bonds - 1];
+    auto &row = x.row[x.s.n_bonds - 1];
     row.t = (row.t + y_of_last) * row.r;
+}
+template <bool bare, class V>
+static inline void substitute_ring(const Molecules<V> &x, const RingLinear<V> &ring) {
+    substitute_ring<bare, AtomRows<V>, V>(
+        x, ring.reach, ring.to_last, [](const BondRow<V> &row) HOL_FORCED { return row.l; },
+        [](const AtomRows<V> &rows, auto known)
+            HOL_FORCED { substitute_joint<known, true>(rows, known, Memory<V>()); });
 }
 
 // A bond's own size and its error per |d|, in squares: tree/siblings.hpp.
