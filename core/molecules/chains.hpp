@@ -18,6 +18,7 @@
 #include "core/molecules/given/molecule.hpp"
 #include "core/molecules/given/shape.hpp"
 #include "core/molecules/planned/plan.hpp"
+#include "core/molecules/settings.hpp"
 
 namespace holonomic {
 
@@ -36,7 +37,7 @@ enum class Checks { never = 0, at_start = 1, always = 2 };
 
 class Batch;
 
-class Chains {
+class Chains : public Settings {
 public:
     Chains(std::int64_t n_atoms, const double *masses);
     Chains(const Chains &);  // shares what has been found out about shapes
@@ -175,16 +176,6 @@ public:
     // after a change of the molecules, their lengths or the box. Thread-safe: several threads may find that it is so.
     bool wants_fit() const { return checks_ == Checks::always || (checks_ == Checks::at_start && !fits_.get()); }
     void note_fit() const { fits_.set(true); }
-
-    int base = 0;  // set_base
-    int n_threads = 1;
-    double tolerance = 0;
-    double length_tolerance = 1e-3;  // by what part lengths of bodies are adjusted, at most (rigid/fit.hpp)
-    int max_iterations = 50;
-    bool keeps_outcomes = false;    // core/run/outcomes.hpp
-    bool finds_bodies = true;       // in lists of bonds whose lengths depend on each other; else they are refused
-    std::int64_t memory_limit = 0;  // bytes; 0: the default (memory_limit.hpp)
-    Cell box{};
 
 private:
     friend class Batch;
