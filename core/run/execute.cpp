@@ -7,7 +7,7 @@
 
 #include "core/error.hpp"
 #include "core/molecules/planned/way.hpp"
-#include "core/kernels/molecules/tree_batch/batch.hpp"
+#include "core/plan/tree_batch.hpp"
 #include "core/run/lane.hpp"
 #include "core/run/outcomes.hpp"
 #include "core/run/thread_memory.hpp"

@@ -3,8 +3,8 @@
 #include <cstdlib>
 
 #include "core/molecules/planned/elimination_plan.hpp"
-#include "core/kernels/molecules/paths/plan.hpp"
-#include "core/kernels/molecules/sparse_ldl/ldl_plan.hpp"
+#include "core/plan/paths.hpp"
+#include "core/plan/sparse_ldl.hpp"
 #include "cuts.hpp"
 #include "seam_molecule.hpp"
 

@@ -81,6 +81,10 @@ constexpr double least_pivot = 1e-10;
 // that.
 constexpr double cancelling_part = 1.0 / (1LL << 54);
 
+// Networks (60): a tree's child that offers less than the first part of the inverse mass of its atom is stiff, and that
+// atom's tensor is kept in twice the precision. What offers less than the second one is taken to offer so much.
+constexpr double stiff_offer = 1e-5, least_stiff_offer = 1e-14;
+
 // The metric (62): the part of what it is subtracted from that a pivot and E must keep. Its inverse is that many
 // roundings off H.
 constexpr double least_kept = 1.0 / 12;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/kernels/extended/molecule.hpp"
-#include "core/kernels/molecules/elimination_plan.hpp"
+#include "core/plan/elimination.hpp"
 
 namespace holonomic::HOL_ISA::extended {
 

@@ -7,8 +7,8 @@
 #include <stddef.h>
 
 #include "core/kernels/memory/stage.hpp"
-#include "core/kernels/molecules/elimination_plan.hpp"
 #include "core/kernels/tally.hpp"
+#include "core/plan/elimination.hpp"
 
 namespace holonomic::HOL_ISA {
 

@@ -3,7 +3,7 @@
 
 #include "core/kernels/extended/plan_of.hpp"
 #include "core/kernels/extended/verbs.hpp"
-#include "core/kernels/molecules/elimination_plan.hpp"
+#include "core/plan/elimination.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/kernels/molecules/network/plan.hpp"
 #include "core/molecules/given/lists.hpp"
 #include "core/molecules/planned/bisection.hpp"
+#include "core/plan/network.hpp"
 
 namespace holonomic {
 

@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "core/kernels/molecules/elimination_plan.hpp"
-#include "core/kernels/molecules/sparse_ldl/ldl_plan.hpp"
 #include "core/molecules/given/lists.hpp"
+#include "core/plan/elimination.hpp"
+#include "core/plan/sparse_ldl.hpp"
 
 namespace holonomic {
 

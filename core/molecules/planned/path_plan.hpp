@@ -1,12 +1,12 @@
-// The paths and junctions of a large molecule (core/kernels/molecules/paths/plan.hpp).
+// The paths and junctions of a large molecule (core/plan/paths.hpp).
 #pragma once
 
 #include <memory>
 #include <vector>
 
-#include "core/kernels/molecules/elimination_plan.hpp"
-#include "core/kernels/molecules/paths/plan.hpp"
 #include "core/molecules/given/lists.hpp"
+#include "core/plan/elimination.hpp"
+#include "core/plan/paths.hpp"
 
 namespace holonomic {
 

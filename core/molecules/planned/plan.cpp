@@ -6,9 +6,9 @@
 #include <unordered_map>
 
 #include "core/index.hpp"
-#include "core/kernels/molecules/elimination_plan.hpp"
 #include "core/molecules/chains.hpp"
 #include "core/molecules/planned/way.hpp"
+#include "core/plan/elimination.hpp"
 #include "core/run/kernel_choice.hpp"
 
 namespace holonomic {

@@ -1,10 +1,10 @@
-// Which atoms of a large molecule's trees can be worked on at once (core/kernels/molecules/elimination_plan.hpp).
+// Which atoms of a large molecule's trees can be worked on at once (core/plan/elimination.hpp).
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include "core/kernels/molecules/elimination_plan.hpp"
+#include "core/plan/elimination.hpp"
 
 namespace holonomic {
 

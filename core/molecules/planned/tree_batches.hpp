@@ -7,7 +7,7 @@
 #include <tuple>
 #include <vector>
 
-#include "core/kernels/molecules/tree_batch/batch.hpp"
+#include "core/plan/tree_batch.hpp"
 
 namespace holonomic {
 

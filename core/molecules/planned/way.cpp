@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "core/kernels/molecules/sparse_ldl/ldl_plan.hpp"
 #include "core/molecules/given/lists.hpp"
+#include "core/plan/sparse_ldl.hpp"
 
 namespace holonomic {
 

@@ -1,10 +1,10 @@
-// Which way a molecule that is no chain takes (core/kernels/molecules/way.hpp): each question, in the order in which
+// Which way a molecule that is no chain takes (core/plan/way.hpp): each question, in the order in which
 // a shape is planned. The shape alone answers them.
 #pragma once
 
 #include <cstdint>
 
-#include "core/kernels/molecules/elimination_plan.hpp"
+#include "core/plan/elimination.hpp"
 
 namespace holonomic {
 

@@ -1,9 +1,10 @@
-// Where the arms of a large molecule (elimination_plan.hpp) are kept while it is solved: each as a chain inside of it.
+// Where the arms of a large molecule (core/plan/elimination.hpp) are kept while it is solved: each as a chain inside of
+// it.
 #pragma once
 
 #include "core/kernels/eliminate/segment.hpp"
-#include "core/kernels/molecules/elimination_plan.hpp"
 #include "core/kernels/molecules/scratch.hpp"
+#include "core/plan/elimination.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 

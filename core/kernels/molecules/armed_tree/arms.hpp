@@ -1,5 +1,5 @@
-// Arms of one large molecule (elimination_plan.hpp), each as a chain inside of it: the inner bonds of its W segments
-// are eliminated at once, without knowing anything else (eliminate/segment.hpp). What a segment leaves to the
+// Arms of one large molecule (core/plan/elimination.hpp), each as a chain inside of it: the inner bonds of its W
+// segments are eliminated at once, without knowing anything else (eliminate/segment.hpp). What a segment leaves to the
 // separators at its two ends is the matrix [c, -f; -f, E] with a = E c - f^2, and T and y on the right: so the joining
 // of verbs/segments.cpp, which subtracts nothing, can go from either end to the other, whichever is the upper one.
 #pragma once

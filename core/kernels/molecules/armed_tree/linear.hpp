@@ -1,6 +1,6 @@
-// The linear equations of one large tree that is mostly arms (elimination_plan.hpp): these are worked on as chains, by
-// any thread, what is between them atom by atom, with the digits of tree/joint.hpp. sweeps.hpp has the functions,
-// compiled once.
+// The linear equations of one large tree that is mostly arms (core/plan/elimination.hpp): these are worked on as
+// chains, by any thread, what is between them atom by atom, with the digits of tree/joint.hpp. sweeps.hpp has the
+// functions, compiled once.
 #pragma once
 
 #include "core/kernels/molecules/armed_tree/arm_store.hpp"

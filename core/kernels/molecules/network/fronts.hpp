@@ -1,11 +1,11 @@
-// The unknowns of a network eliminated directly, front by front (front_plan.hpp): L D U of their matrix (I. Duff, J.
-// Reid, ACM Trans. Math. Softw. 9, 302 (1983)). It is a preconditioner: what rounding does to it, residuals show.
+// The unknowns of a network eliminated directly, front by front (core/plan/fronts.hpp): L D U of their matrix (I. Duff,
+// J. Reid, ACM Trans. Math. Softw. 9, 302 (1983)). It is a preconditioner: what rounding does to it, residuals show.
 #pragma once
 
 #include "core/kernels/molecules/network/dense.hpp"
-#include "core/kernels/molecules/network/plan.hpp"
 #include "core/kernels/molecules/scratch.hpp"
-#include "core/kernels/molecules/sparse_ldl/ldl_plan.hpp"
+#include "core/plan/network.hpp"
+#include "core/plan/sparse_ldl.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 

@@ -1,6 +1,6 @@
-// Linear equations of molecules with cycles, and of large ones, by sparse LDL^T (ldl_plan.hpp): A t = b as it stands,
-// and what it is made of. Of one molecule (V = double), or of W of one shape in lanes. factor.hpp solves them;
-// whether that will do without refinement, error_bound.hpp says.
+// Linear equations of molecules with cycles, and of large ones, by sparse LDL^T (core/plan/sparse_ldl.hpp): A t = b as
+// it stands, and what it is made of. Of one molecule (V = double), or of W of one shape in lanes. factor.hpp solves
+// them; whether that will do without refinement, error_bound.hpp says.
 #pragma once
 
 #include "core/kernels/molecules/load.hpp"

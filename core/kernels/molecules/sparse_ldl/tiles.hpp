@@ -1,11 +1,11 @@
-// What is done by sparse LDL^T, tile by tile (ldl_plan.hpp): columns one after the other, what tiles give to each
-// other, triangular solves, and what is read of a tile's atoms.
+// What is done by sparse LDL^T, tile by tile (core/plan/sparse_ldl.hpp): columns one after the other, what tiles give
+// to each other, triangular solves, and what is read of a tile's atoms.
 #pragma once
 
 #include "core/kernels/molecules/molecules.hpp"
 #include "core/kernels/molecules/share_out.hpp"
-#include "core/kernels/molecules/sparse_ldl/ldl_plan.hpp"
 #include "core/kernels/molecules/sparse_ldl/rows.hpp"
+#include "core/plan/sparse_ldl.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 
 #include "core/kernels/molecules/molecules.hpp"
-#include "core/kernels/molecules/tree_batch/batch.hpp"
+#include "core/plan/tree_batch.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 
@@ -22,7 +22,7 @@ HOL_INLINE vec numbers_at(const double *const *p, int64_t offset) {
 #endif
 }
 
-// Where an element (batch.hpp) of working values of type Row = n vectors begins.
+// Where an element (core/plan/tree_batch.hpp) of working values of type Row = n vectors begins.
 template <class Row>
 HOL_INLINE double *element_of(Row *first, int32_t element) {
     constexpr int64_t n = sizeof(Row) / sizeof(vec);

@@ -1,5 +1,5 @@
-// The linear equations of one large tree, tile by tile (batch.hpp): what is done with a tile is done while it is in
-// a cache, and by any thread.
+// The linear equations of one large tree, tile by tile (core/plan/tree_batch.hpp): what is done with a tile is done
+// while it is in a cache, and by any thread.
 #pragma once
 
 #include "core/kernels/molecules/share_out.hpp"

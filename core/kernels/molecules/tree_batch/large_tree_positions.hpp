@@ -1,5 +1,6 @@
-// Position level of one large tree, tile by tile (batch.hpp): a system of one number for iterate.hpp. What goes up
-// is done behind what makes it, while the tile is in a cache; so it is done once too often when a solve was the last.
+// Position level of one large tree, tile by tile (core/plan/tree_batch.hpp): a system of one number for iterate.hpp.
+// What goes up is done behind what makes it, while the tile is in a cache; so it is done once too often when a solve
+// was the last.
 #pragma once
 
 #include "core/kernels/molecules/share_out.hpp"

@@ -1,5 +1,5 @@
-// The linear equations of W different trees (batch.hpp). The arithmetic is that of tree/joint.hpp, so that a tree's
-// digits do not depend on whether it comes with others of its shape, with others, or alone.
+// The linear equations of W different trees (core/plan/tree_batch.hpp). The arithmetic is that of tree/joint.hpp, so
+// that a tree's digits do not depend on whether it comes with others of its shape, with others, or alone.
 #pragma once
 
 #include <stddef.h>

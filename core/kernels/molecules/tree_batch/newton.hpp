@@ -1,5 +1,5 @@
-// Newton's method for the positions of W different trees (batch.hpp): a system for iterate.hpp. The arithmetic is that
-// of tree/newton.hpp, so that a tree's digits do not depend on whether it comes with others.
+// Newton's method for the positions of W different trees (core/plan/tree_batch.hpp): a system for iterate.hpp. The
+// arithmetic is that of tree/newton.hpp, so that a tree's digits do not depend on whether it comes with others.
 #pragma once
 
 #include <stddef.h>

@@ -5,10 +5,10 @@
 
 #include "core/kernels/arithmetic/thresholds.hpp"
 #include "core/kernels/molecules/atoms/consecutive.hpp"
-#include "core/kernels/molecules/elimination_plan.hpp"
 #include "core/kernels/molecules/image.hpp"
 #include "core/kernels/molecules/molecules.hpp"
 #include "core/kernels/molecules/virial.hpp"
+#include "core/plan/elimination.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 

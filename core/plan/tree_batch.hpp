@@ -5,7 +5,7 @@
 
 #include <stdint.h>
 
-#include "core/kernels/molecules/elimination_plan.hpp"
+#include "core/plan/elimination.hpp"
 
 namespace holonomic {
 

@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-#include "core/kernels/molecules/way.hpp"
+#include "core/plan/way.hpp"
 
 namespace holonomic {
 
@@ -12,9 +12,9 @@ namespace holonomic {
 // (tree/many.hpp), and with k products for positions.
 static constexpr int32_t values_of_joint(int32_t k) { return k > most_decomposed ? 9 + 3 * k : k * (k - 1) / 2; }
 
-struct LdlPlan;      // core/kernels/molecules/sparse_ldl/ldl_plan.hpp
-struct PathPlan;     // core/kernels/molecules/paths/plan.hpp
-struct NetworkPlan;  // core/kernels/molecules/network/plan.hpp
+struct LdlPlan;      // core/plan/sparse_ldl.hpp
+struct PathPlan;     // core/plan/paths.hpp
+struct NetworkPlan;  // core/plan/network.hpp
 
 // Atoms and bonds are renumbered. The *slot* of an atom: first the atoms of the trees, each after its children, then
 // the root of a tree, or the atoms of the core. In molecules that may go in lanes the slots of the children of all
