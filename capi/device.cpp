@@ -11,7 +11,7 @@ using holonomic::Status;
 using holonomic::device::Precision;
 
 struct hol_device_plan {
-    holonomic::device::Plan plan;
+    holonomic::device::KernelPlan plan;
 };
 
 namespace {
@@ -33,7 +33,7 @@ Bytes bytes_of(const std::vector<Element> &array) {
     return {array.data(), static_cast<std::int64_t>(array.size() * sizeof(Element))};
 }
 
-Bytes array_of(const holonomic::device::Plan &plan, hol_device_array which) {
+Bytes array_of(const holonomic::device::KernelPlan &plan, hol_device_array which) {
     switch (which) {
         case HOL_DEVICE_INTEGERS:
             return bytes_of(plan.integers);

@@ -17,6 +17,6 @@ int hol_equimomental_points(double mass, const double *centre, const double *ine
         const holonomic::rigid::MassPoints found = holonomic::rigid::equimomental_points(mass, centre, inertia);
         *n_points = found.n;
         std::fill_n(masses, found.n, found.mass);
-        std::copy_n(found.place[0], 3 * found.n, places);
+        std::copy_n(found.coordinates[0], 3 * found.n, places);
     });
 }

@@ -43,9 +43,9 @@ void for_bonds(const BondVectors &bonds, const Molecule &m, const Each &each) {
 }
 
 // How vectors are read: most arrays are packed, and most programs have no box or a rectangular one.
-struct Packed {
+struct PackedRows {
     const double *x;
-    explicit Packed(const AtomArray &array) : x(reinterpret_cast<const double *>(array.x)) {}
+    explicit PackedRows(const AtomArray &array) : x(reinterpret_cast<const double *>(array.x)) {}
     void read(std::int64_t i, double *d) const {
         for (int c = 0; c < 3; ++c) d[c] = x[3 * i + c];
     }
@@ -112,9 +112,10 @@ bool go_through(const Chains &chains, const BondVectors &bonds, const Each &each
 }
 template <class Each>
 bool go_through(const Chains &chains, const BondVectors &bonds, const Each &each) {
-    const bool packed = (bonds.r ? bonds.r : bonds.d)->packed, box = bonds.r && bonds.box->shape != Box::none;
+    const bool packed = (bonds.r ? bonds.r : bonds.d)->packed, box = bonds.r && bonds.box->lattice != Box::none;
     if (packed)
-        return box ? go_through<Packed, InBox>(chains, bonds, each) : go_through<Packed, NoBox>(chains, bonds, each);
+        return box ? go_through<PackedRows, InBox>(chains, bonds, each)
+                   : go_through<PackedRows, NoBox>(chains, bonds, each);
     return box ? go_through<AnyLayout, InBox>(chains, bonds, each) : go_through<AnyLayout, NoBox>(chains, bonds, each);
 }
 
@@ -128,15 +129,15 @@ bool all_within(const Chains &chains, const BondVectors &bonds, double least, do
 }
 
 // What does not fit, and how all bonds are.
-struct Misfit {
+struct BondMisfit {
     std::int64_t molecule = -1, bond = -1, n_molecules = 0, n_bad = 0;
     double worst = 1;  // the larger one of length over length wanted, and its inverse
     double least = std::numeric_limits<double>::infinity(), most = 0;  // length over length wanted, of all bonds
 };
 
 template <class IsBad>
-Misfit find_misfit(const Chains &chains, const BondVectors &bonds, Status status, const IsBad &is_bad) {
-    Misfit found;
+BondMisfit find_misfit(const Chains &chains, const BondVectors &bonds, Status status, const IsBad &is_bad) {
+    BondMisfit found;
     chains.for_active([&](const Molecule &m) {
         bool bad = false;
         for_bonds(bonds, m, [&](std::int64_t k, const double *d) {
@@ -161,7 +162,7 @@ Misfit find_misfit(const Chains &chains, const BondVectors &bonds, Status status
 }
 
 // What is likely to have gone wrong, by what the bonds look like; the most likely first.
-void write_causes(const Misfit &found, const Box *box, int base, char *text, std::size_t size) {
+void write_causes(const BondMisfit &found, const Box *box, int base, char *text, std::size_t size) {
     const bool none_is_right = found.least > 1 + most_off || found.most < 1 - most_off;
     if (none_is_right && found.most < 1.2 * found.least && found.worst > crude)
         std::snprintf(text, size, "all are about %.3g times as long: lengths and positions are hardly in the same unit",
@@ -171,11 +172,11 @@ void write_causes(const Misfit &found, const Box *box, int base, char *text, std
                       "likely a crude start or another force field's lengths (hol_impose), or another order");
     else
         std::snprintf(text, size, "likely a %s, another order or unit, or atoms counted from %d (here from %d)",
-                      !box || box->shape == Box::none ? "molecule cut by a face" : "box of another time", 1 - base,
+                      !box || box->lattice == Box::none ? "molecule cut by a face" : "box of another time", 1 - base,
                       base);
 }
 
-Error misfit_error(const Chains &chains, const Misfit &found, const BondVectors &bonds, const char *what) {
+Error misfit_error(const Chains &chains, const BondMisfit &found, const BondVectors &bonds, const char *what) {
     const Molecule m = chains.molecule(found.molecule);
     double length = 0;
     for_bonds(bonds, m, [&](std::int64_t k, const double *d) {
@@ -225,7 +226,7 @@ void check_reference(const Chains &chains, const BondVectors &bonds, const char 
         if (bonds.r) check_cut(chains, *bonds.r, *bonds.box, what);
         return;
     }
-    const Misfit found = find_misfit(chains, bonds, Status::lengths, [&](double length, double a) {
+    const BondMisfit found = find_misfit(chains, bonds, Status::lengths, [&](double length, double a) {
         return std::fabs(length - a) > most_off * a || length > longest;
     });
     if (bonds.r && found.worst <= crude) check_cut(chains, *bonds.r, *bonds.box, what);
@@ -235,7 +236,7 @@ void check_reference(const Chains &chains, const BondVectors &bonds, const char 
 void check_trial(const Chains &chains, const AtomArray &r) {
     const BondVectors bonds{&r, nullptr, &chains.box};
     if (all_within(chains, bonds, 0, most_stretched, std::numeric_limits<double>::infinity())) return;
-    const Misfit found = find_misfit(chains, bonds, Status::no_convergence, is_too_long);
+    const BondMisfit found = find_misfit(chains, bonds, Status::no_convergence, is_too_long);
     if (found.molecule < 0) return;
     const Molecule m = chains.molecule(found.molecule);
     throw stretched_error(chains, m, found.bond, found.worst * m.length(found.bond), found.n_bad);

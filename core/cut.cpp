@@ -19,7 +19,7 @@ constexpr double least_of_interest = 1e-3;
 constexpr double worse = 3, worse_than_few = 100;
 constexpr std::int64_t few = 12, least_inside = 3;
 
-struct Worst {
+struct WorstFit {
     double off = 0, length = 0;
     std::int64_t molecule = -1, bond = -1, n = 0;
     void take(const Molecule &m, std::int64_t k, double length_now) {
@@ -41,8 +41,8 @@ bool is_of_another_box(double cut, double inside, std::int64_t n_inside) {
 }
 
 void check_cut(const Chains &chains, const AtomArray &r, const Box &box, const char *what) {
-    if (box.shape == Box::none) return;
-    Worst cut, inside;
+    if (box.lattice == Box::none) return;
+    WorstFit cut, inside;
     chains.for_active([&](const Molecule &m) {
         for (std::int64_t k = 0; k < m.n_bonds; ++k) {
             double from[3], to[3], d[3];

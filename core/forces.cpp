@@ -7,11 +7,11 @@
 #include "core/caller/packed_array.hpp"
 #include "core/rigid/parts.hpp"
 #include "core/rigid/verbs.hpp"
-#include "core/run/apart.hpp"
 #include "core/run/diagnose.hpp"
 #include "core/run/execute.hpp"
 #include "core/run/outcomes.hpp"
 #include "core/run/rescale.hpp"
+#include "core/run/staging.hpp"
 #include "core/run/thread_memory.hpp"
 #include "core/solve.hpp"
 
@@ -22,18 +22,18 @@ namespace {
 struct ForcesWork final : Work {
     const Variants<ForcesCall> calls;
     const Kernels &k = kernels();
-    ForcesWork(const ForcesCall &call, Apart &apart)
+    ForcesWork(const ForcesCall &call, Staging &staging)
         : calls(
-              call, apart,
+              call, staging,
               [&](ForcesCall &c) {
-                  c.lambda = apart.results(call.lambda);
-                  c.tension = apart.results(call.tension);
+                  c.lambda = staging.results(call.lambda);
+                  c.tension = staging.results(call.tension);
               },
               [&](ForcesCall &c) {
-                  c.r = apart.atoms(call.r);
-                  c.v = apart.atoms(call.v);
-                  c.f = apart.atoms(call.f);
-                  c.g = apart.summed_atoms(call.g, call.add);
+                  c.r = staging.atoms(call.r);
+                  c.v = staging.atoms(call.v);
+                  c.f = staging.atoms(call.f);
+                  c.g = staging.summed_atoms(call.g, call.add);
               }) {}
     void unit(const Unit &unit, int where, double *scratch, Tally &tally) const override {
         kernels(unit).forces(calls[where], unit, scratch, tally);
@@ -82,9 +82,9 @@ struct ForcesWork final : Work {
 __attribute__((always_inline)) inline Tally forces_at_rest(const Chains &chains, ForcesCall &call) {
     AtomArray *const inputs[] = {&call.r, &call.v, &call.f};
     unify_layout(inputs, 3);
-    Apart apart(chains);
-    const Tally tally = execute(chains, ForcesWork(call, apart));
-    apart.put_back();
+    Staging staging(chains);
+    const Tally tally = execute(chains, ForcesWork(call, staging));
+    staging.put_back();
     clear_unconstrained(chains, call.lambda);
     clear_unconstrained(chains, call.tension);
     return tally;

@@ -8,11 +8,11 @@
 #include "core/molecules/given/memory_limit.hpp"
 #include "core/rigid/parts.hpp"
 #include "core/rigid/verbs.hpp"
-#include "core/run/apart.hpp"
 #include "core/run/diagnose.hpp"
 #include "core/run/execute.hpp"
 #include "core/run/outcomes.hpp"
 #include "core/run/rescale.hpp"
+#include "core/run/staging.hpp"
 
 namespace holonomic {
 
@@ -22,12 +22,12 @@ struct MetricWork final : Work {
     const Variants<MetricCall> calls;
     const Kernels &k = kernels();
     const std::int64_t extended_bytes;  // that others do without
-    MetricWork(const MetricCall &call, Apart &apart, std::int64_t bytes)
+    MetricWork(const MetricCall &call, Staging &staging, std::int64_t bytes)
         : calls(
-              call, apart, [](MetricCall &) {},
+              call, staging, [](MetricCall &) {},
               [&](MetricCall &c) {
-                  c.r = apart.atoms(call.r);
-                  c.force = apart.summed_atoms(call.force, call.add);
+                  c.r = staging.atoms(call.r);
+                  c.force = staging.summed_atoms(call.force, call.add);
               }),
           extended_bytes(bytes) {}
     std::int64_t scratch_bytes() const override { return extended_bytes; }
@@ -107,9 +107,9 @@ double metric_of_bonds(const Chains &chains, MetricCall &call) {
         const EliminationPlan &s = *chains.plan().elimination_plans[static_cast<std::size_t>(shape)];
         extended_bytes = std::max(extended_bytes, more_scratch(chains, s));
     }
-    Apart apart(chains);
-    const Tally tally = execute(chains, MetricWork(call, apart, extended_bytes));
-    apart.put_back();
+    Staging staging(chains);
+    const Tally tally = execute(chains, MetricWork(call, staging, extended_bytes));
+    staging.put_back();
     if (tally.n_bad > 0) {
         const NamedArray arrays[] = {{"position", &call.r}};
         throw_error(chains, tally,

@@ -10,11 +10,11 @@
 #include "core/reference.hpp"
 #include "core/rigid/parts.hpp"
 #include "core/rigid/verbs.hpp"
-#include "core/run/apart.hpp"
 #include "core/run/diagnose.hpp"
 #include "core/run/execute.hpp"
 #include "core/run/outcomes.hpp"
 #include "core/run/rescale.hpp"
+#include "core/run/staging.hpp"
 #include "core/run/thread_memory.hpp"
 
 namespace holonomic {
@@ -24,13 +24,13 @@ namespace {
 struct PositionsWork final : Work {
     const Variants<PositionsCall> calls;
     const Kernels &k = kernels();
-    PositionsWork(const PositionsCall &call, Apart &apart, const Reference *reference)
+    PositionsWork(const PositionsCall &call, Staging &staging, const Reference *reference)
         : calls(
-              call, apart, [&](PositionsCall &c) { c.lambda = apart.results(call.lambda); },
+              call, staging, [&](PositionsCall &c) { c.lambda = staging.results(call.lambda); },
               [&](PositionsCall &c) {
-                  c.r_ref = reference ? reference->staged() : apart.atoms(call.r_ref);
-                  c.r = apart.moved_atoms(call.r);
-                  c.v = apart.moved_atoms(call.v);
+                  c.r_ref = reference ? reference->staged() : staging.atoms(call.r_ref);
+                  c.r = staging.moved_atoms(call.r);
+                  c.v = staging.moved_atoms(call.v);
               }) {}
     void unit(const Unit &unit, int where, double *scratch, Tally &tally) const override {
         kernels(unit).positions(calls[where], unit, scratch, tally);
@@ -143,9 +143,9 @@ void project_from(const Chains &chains, PositionsCall &call, const Reference *re
         kept = call.r_ref;
         call.r_ref = copy_of(kept, chains);
     }
-    Apart apart(chains);
-    Tally tally = execute(chains, PositionsWork(call, apart, reference));
-    apart.put_back();
+    Staging staging(chains);
+    Tally tally = execute(chains, PositionsWork(call, staging, reference));
+    staging.put_back();
     if (copies) call.r_ref = kept;
     if (tally.n_bad > 0) {
         call.far_trial = call.worst_trial = chains.checks() == Checks::never ? __builtin_inf() : worst_trial;

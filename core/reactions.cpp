@@ -7,10 +7,10 @@
 #include "core/caller/packed_array.hpp"
 #include "core/rigid/parts.hpp"
 #include "core/rigid/verbs.hpp"
-#include "core/run/apart.hpp"
 #include "core/run/diagnose.hpp"
 #include "core/run/execute.hpp"
 #include "core/run/lane.hpp"
+#include "core/run/staging.hpp"
 
 namespace holonomic {
 
@@ -25,7 +25,7 @@ struct Call {
 };
 
 // A bond's vector d, 2 lambda, and the pull 2 lambda d.
-struct Pull {
+struct BondPull {
     double d[3], t, p[3];
 };
 
@@ -39,24 +39,24 @@ inline Vector read(const AtomArray &array, std::int64_t atom) {
     return a;
 }
 
-inline Pull pull_of(const Call &call, const Vector &ri, const Vector &rj, std::int64_t bond) {
-    Pull x;
+inline BondPull pull_of(const Call &call, const Vector &ri, const Vector &rj, std::int64_t bond) {
+    BondPull x;
     bond_vector(*call.box, ri.x, rj.x, x.d);
     x.t = 2 * call.given[bond];
     for (int c = 0; c < 3; ++c) x.p[c] = x.t * x.d[c];
     return x;
 }
 
-inline double length_of(const Pull &x) { return std::sqrt(x.d[0] * x.d[0] + x.d[1] * x.d[1] + x.d[2] * x.d[2]); }
+inline double length_of(const BondPull &x) { return std::sqrt(x.d[0] * x.d[0] + x.d[1] * x.d[1] + x.d[2] * x.d[2]); }
 
 // xx xy xz yy yz zz of - t d (x) d; zeros as +0.
-inline void virial_of(const Pull &x, double *w) {
+inline void virial_of(const BondPull &x, double *w) {
     for (int a = 0; a < 3; ++a)
         for (int b = a; b < 3; ++b) *w++ = 0 - x.p[a] * x.d[b];
 }
 
 // Not finite if anything of the bond is not, or if its virial or twice the force would overflow.
-inline double size_of(const Pull &x) {
+inline double size_of(const BondPull &x) {
     double force = 0, length = 0;
     for (int c = 0; c < 3; ++c) {
         force += std::fabs(x.p[c]);
@@ -65,7 +65,7 @@ inline double size_of(const Pull &x) {
     return 4 * force + force * length + length;
 }
 
-inline void write_bond(const Call &call, const Pull &x, std::int64_t bond, Tally &tally) {
+inline void write_bond(const Call &call, const BondPull &x, std::int64_t bond, Tally &tally) {
     if (call.lambda) call.lambda[bond] = call.given[bond];
     if (call.tension) call.tension[bond] = x.t * length_of(x);
     double w[6];
@@ -95,7 +95,7 @@ void along(const Call &call, const Lane &lane, std::int64_t begin, std::int64_t 
 
 bool is_finite(const Call &call, const Lane &lane, std::int64_t begin, std::int64_t end) {
     double size = 0;
-    along(call, lane, begin, end, [&](std::int64_t, const Pull &x) { size += size_of(x); });
+    along(call, lane, begin, end, [&](std::int64_t, const BondPull &x) { size += size_of(x); });
     return std::isfinite(size);
 }
 
@@ -103,8 +103,10 @@ bool is_finite(const Call &call, const Lane &lane, std::int64_t begin, std::int6
 void write_chain(const Call &call, const Lane &lane, std::int64_t begin, std::int64_t end, Tally &tally) {
     Vector before{};
     if (begin > 0)
-        along(call, lane, begin - 1, begin, [&](std::int64_t, const Pull &x) { before = {{x.p[0], x.p[1], x.p[2]}}; });
-    along(call, lane, begin, end, [&](std::int64_t k, const Pull &x) {
+        along(call, lane, begin - 1, begin, [&](std::int64_t, const BondPull &x) {
+            before = {{x.p[0], x.p[1], x.p[2]}};
+        });
+    along(call, lane, begin, end, [&](std::int64_t k, const BondPull &x) {
         write_bond(call, x, lane.first_bond + k, tally);
         if (!call.g.x) return;
         write_force(call, atom_of(lane, k), {{x.p[0] - before.x[0], x.p[1] - before.x[1], x.p[2] - before.x[2]}});
@@ -127,7 +129,7 @@ void over_bonds(const Call &call, const EliminationPlan &shape, const MoleculeLa
 void write_molecule(const Call &call, const EliminationPlan &shape, const MoleculeLane &lane, double *force,
                     Tally &tally) {
     if (call.g.x) std::fill_n(force, 3 * std::ptrdiff_t{shape.n_atoms}, 0.0);
-    over_bonds(call, shape, lane, [&](std::int32_t k, const Pull &x) {
+    over_bonds(call, shape, lane, [&](std::int32_t k, const BondPull &x) {
         write_bond(call, x, lane.first_bond + k, tally);
         if (!call.g.x) return;
         double *const i = force + 3 * std::ptrdiff_t{shape.atom_i[k]};
@@ -144,18 +146,18 @@ void write_molecule(const Call &call, const EliminationPlan &shape, const Molecu
 struct ReactionsWork final : Work {
     static constexpr std::int64_t block = 4096;  // bonds of a long chain that a thread takes at a time
     const Variants<Call> calls;
-    ReactionsWork(const Call &call, Apart &apart)
+    ReactionsWork(const Call &call, Staging &staging)
         : calls(
-              call, apart,
+              call, staging,
               [&](Call &c) {
-                  c.given = apart.inputs(call.given);
-                  c.lambda = apart.results(call.lambda);
-                  c.tension = apart.results(call.tension);
-                  c.bond_virial = apart.results(call.bond_virial, 6);
+                  c.given = staging.inputs(call.given);
+                  c.lambda = staging.results(call.lambda);
+                  c.tension = staging.results(call.tension);
+                  c.bond_virial = staging.results(call.bond_virial, 6);
               },
               [&](Call &c) {
-                  c.r = apart.atoms(call.r);
-                  c.g = apart.summed_atoms(call.g, call.add);
+                  c.r = staging.atoms(call.r);
+                  c.g = staging.summed_atoms(call.g, call.add);
               }) {}
     void unit(const Unit &unit, int where, double *, Tally &tally) const override {
         const Call &call = calls[where];
@@ -172,7 +174,7 @@ struct ReactionsWork final : Work {
         for (std::int64_t i = 0; i < unit.count; ++i) {
             const MoleculeLane lane = lane_of(unit, i);
             double size = 0;
-            over_bonds(call, *unit.elimination, lane, [&](std::int32_t, const Pull &x) { size += size_of(x); });
+            over_bonds(call, *unit.elimination, lane, [&](std::int32_t, const BondPull &x) { size += size_of(x); });
             if (std::isfinite(size))
                 write_molecule(call, *unit.elimination, lane, scratch, tally);
             else
@@ -199,9 +201,9 @@ struct ReactionsWork final : Work {
 
 Tally react(const Chains &chains, const AtomArray &r, const Cell &box, const double *lambda, const Reactions &out) {
     const Call call{r, out.g, lambda, out.lambda, out.tension, out.bond_virial, out.add, out.virial, &box};
-    Apart apart(chains, 6);
-    const Tally tally = execute(chains, ReactionsWork(call, apart));
-    apart.put_back();
+    Staging staging(chains, 6);
+    const Tally tally = execute(chains, ReactionsWork(call, staging));
+    staging.put_back();
     clear_unconstrained(chains, out.lambda);
     clear_unconstrained(chains, out.tension);
     clear_unconstrained(chains, out.bond_virial, 6);

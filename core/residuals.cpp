@@ -7,8 +7,8 @@
 #include "core/kernels/tally.hpp"
 #include "core/rigid/parts.hpp"
 #include "core/rigid/verbs.hpp"
-#include "core/run/apart.hpp"
 #include "core/run/diagnose.hpp"
+#include "core/run/staging.hpp"
 
 namespace holonomic {
 

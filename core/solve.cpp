@@ -7,11 +7,11 @@
 #include "core/reactions.hpp"
 #include "core/rigid/parts.hpp"
 #include "core/rigid/verbs.hpp"
-#include "core/run/apart.hpp"
 #include "core/run/diagnose.hpp"
 #include "core/run/execute.hpp"
 #include "core/run/outcomes.hpp"
 #include "core/run/rescale.hpp"
+#include "core/run/staging.hpp"
 #include "core/run/thread_memory.hpp"
 
 namespace holonomic {
@@ -21,17 +21,17 @@ namespace {
 struct SolveWork final : Work {
     const Variants<SolveCall> calls;
     const Kernels &k = kernels();
-    SolveWork(const SolveCall &call, Apart &apart)
+    SolveWork(const SolveCall &call, Staging &staging)
         : calls(
-              call, apart,
+              call, staging,
               [&](SolveCall &c) {
-                  c.rhs = apart.inputs(call.rhs);
-                  c.lambda = apart.results(call.lambda);
-                  c.tension = apart.results(call.tension);
+                  c.rhs = staging.inputs(call.rhs);
+                  c.lambda = staging.results(call.lambda);
+                  c.tension = staging.results(call.tension);
               },
               [&](SolveCall &c) {
-                  c.r = apart.atoms(call.r);
-                  c.g = apart.summed_atoms(call.g, call.add);
+                  c.r = staging.atoms(call.r);
+                  c.g = staging.summed_atoms(call.g, call.add);
               }) {}
     void unit(const MoleculeUnit &unit, int where, double *scratch, Tally &tally) const override {
         k.molecules.solve(calls[where], unit, scratch, tally);
@@ -59,16 +59,16 @@ bool divides_chains(const Plan &plan) {
 }
 
 Tally solve_parts(const Chains &chains, const Plan &plan, const SolveCall &call) {
-    Apart apart(chains, plan);
+    Staging staging(chains, plan);
     Tally tally = empty_tally();
-    execute(chains, plan, SolveWork(call, apart), tally);
-    apart.put_back();
+    execute(chains, plan, SolveWork(call, staging), tally);
+    staging.put_back();
     return tally;
 }
 
 }  // namespace
 
-Tally solve_equations(const Chains &chains, const AtomArray &r, const double *rhs, const Solution &out) {
+Tally solve_equations(const Chains &chains, const AtomArray &r, const double *rhs, const SolveOutputs &out) {
     const Plan &plan = chains.plan_of_parts();
     if (!divides_chains(plan)) {
         const Tally tally =

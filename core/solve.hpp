@@ -12,11 +12,11 @@ void solve(const Chains &chains, const AtomArray &r, const double *rhs, double *
 
 // The same and tensions for right-hand sides of the library's own: what is due has been written, `virial` is in the
 // tally, and what is bad is the caller's to say.
-struct Solution {
+struct SolveOutputs {
     double *lambda, *tension;  // [n_bonds] or nullptr
     AtomArray g;
     bool add, virial;
 };
-Tally solve_equations(const Chains &chains, const AtomArray &r, const double *rhs, const Solution &out);
+Tally solve_equations(const Chains &chains, const AtomArray &r, const double *rhs, const SolveOutputs &out);
 
 }  // namespace holonomic

@@ -6,11 +6,11 @@
 #include "core/caller/packed_array.hpp"
 #include "core/rigid/parts.hpp"
 #include "core/rigid/verbs.hpp"
-#include "core/run/apart.hpp"
 #include "core/run/diagnose.hpp"
 #include "core/run/execute.hpp"
 #include "core/run/outcomes.hpp"
 #include "core/run/rescale.hpp"
+#include "core/run/staging.hpp"
 
 namespace holonomic {
 
@@ -19,12 +19,12 @@ namespace {
 struct VelocitiesWork final : Work {
     const Variants<VelocitiesCall> calls;
     const Kernels &k = kernels();
-    VelocitiesWork(const VelocitiesCall &call, Apart &apart)
+    VelocitiesWork(const VelocitiesCall &call, Staging &staging)
         : calls(
-              call, apart, [&](VelocitiesCall &c) { c.lambda = apart.results(call.lambda); },
+              call, staging, [&](VelocitiesCall &c) { c.lambda = staging.results(call.lambda); },
               [&](VelocitiesCall &c) {
-                  c.r = apart.atoms(call.r);
-                  c.v = apart.moved_atoms(call.v);
+                  c.r = staging.atoms(call.r);
+                  c.v = staging.moved_atoms(call.v);
               }) {}
     void unit(const Unit &unit, int where, double *scratch, Tally &tally) const override {
         kernels(unit).velocities(calls[where], unit, scratch, tally);
@@ -83,9 +83,9 @@ void project_velocities_of_bonds(const Chains &chains, VelocitiesCall &call, dou
     put_box(chains.box, call.box);
     AtomArray *const inputs[] = {&call.r, &call.v};
     unify_layout(inputs, 2);
-    Apart apart(chains);
-    const Tally tally = execute(chains, VelocitiesWork(call, apart));
-    apart.put_back();
+    Staging staging(chains);
+    const Tally tally = execute(chains, VelocitiesWork(call, staging));
+    staging.put_back();
     clear_unconstrained(chains, call.lambda);
     if (tally.n_bad > 0) throw_error_of(chains, tally, call);
     if (virial) write_virial(tally, virial);

@@ -20,7 +20,7 @@ bool is_diagonal(const double m[3][3]) {
 
 Box orthorhombic_box(const double m[3][3]) {
     Box box{};
-    box.shape = Box::orthorhombic;
+    box.lattice = Box::orthorhombic;
     for (int i = 0; i < 3; ++i) {
         box.h[4 * i] = m[i][i];
         box.inverse[4 * i] = m[i][i] != 0 ? 1 / m[i][i] : 0;
@@ -100,7 +100,7 @@ Box make_box(const double *h) {
         if (is_diagonal(m)) return orthorhombic_box(m);
     }
     Box next{};
-    next.shape = Box::triclinic;
+    next.lattice = Box::triclinic;
     for (int i = 0; i < 3; ++i)
         for (int c = 0; c < 3; ++c) {
             next.h[3 * i + c] = m[i][c];
@@ -127,7 +127,7 @@ double gradient_along(const Box &box, int i) {
 }  // namespace
 
 int narrow_side(const Box &box, double longest_bond, double *width) {
-    if (box.shape == Box::none || longest_bond == 0) return -1;
+    if (box.lattice == Box::none || longest_bond == 0) return -1;
     for (int i = 0; i < 3; ++i) {
         const double gradient = gradient_along(box, i);
         if (gradient * 2 * longest_bond <= 1 + 1e-12) continue;
@@ -138,14 +138,14 @@ int narrow_side(const Box &box, double longest_bond, double *width) {
 }
 
 double steepest_gradient(const Box &box) {
-    if (box.shape == Box::none) return 0;
+    if (box.lattice == Box::none) return 0;
     double steepest = 0;
     for (int i = 0; i < 3; ++i) steepest = std::max(gradient_along(box, i), steepest);
     return steepest;
 }
 
 std::int64_t bonds_round(const Box &box, double longest_bond) {
-    if (box.shape == Box::none) return 0;
+    if (box.lattice == Box::none) return 0;
     const double n = std::floor(1 / (steepest_gradient(box) * longest_bond) * (1 - 1e-9)) + 1;
     return n < 1e18 ? static_cast<std::int64_t>(n) : 0;
 }
@@ -165,7 +165,7 @@ BoxRate make_box_rate(const double *L) {
 }
 
 void minimum_image(const Box &box, double *d) {
-    if (box.shape == Box::none) return;
+    if (box.lattice == Box::none) return;
     double n[3];
     for (int i = 0; i < 3; ++i)
         n[i] = std::nearbyint(d[0] * box.inverse[i] + d[1] * box.inverse[3 + i] + d[2] * box.inverse[6 + i]);

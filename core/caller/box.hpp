@@ -20,8 +20,8 @@ Cell make_cell(const double *h);
 // The box of a call. Of one that is not there nothing but that is read or copied: a box is larger than all that a call
 // on one short chain reads.
 inline void put_box(const Box &box, Box &of_call) {
-    of_call.shape = box.shape;
-    if (box.shape != Box::none) of_call = box;
+    of_call.lattice = box.lattice;
+    if (box.lattice != Box::none) of_call = box;
 }
 
 // The box vector along which opposite faces are nearer than twice this length, and how near; -1 if they are not.
@@ -53,7 +53,7 @@ void minimum_image(const Box &box, double *d);
 // The minimum image of `to` - `from`.
 inline void bond_vector(const Box &box, const double *from, const double *to, double *d) {
     for (int c = 0; c < 3; ++c) d[c] = to[c] - from[c];
-    if (box.shape != Box::none) minimum_image(box, d);
+    if (box.lattice != Box::none) minimum_image(box, d);
 }
 
 }  // namespace holonomic

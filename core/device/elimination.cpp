@@ -47,7 +47,7 @@ int filled(const Neighbours &near, int bond) {
 }
 
 // Products that any order takes at least: all bonds of an atom have entries with each other.
-std::int64_t least_products(const Kind &kind) {
+std::int64_t least_products(const KernelKind &kind) {
     std::vector<std::int64_t> degree(at(kind.n_atoms), 0);
     std::int64_t sum = 0;
     for (const auto &bond : kind.bonds)
@@ -61,7 +61,7 @@ std::int64_t least_products(const Kind &kind) {
 // An order that grows bond by bond.
 class Order {
 public:
-    explicit Order(Kind &of)
+    explicit Order(KernelKind &of)
         : near(bonds_that_share_atoms(of.n_atoms, of.bonds)), kind_(of), place_(of.bonds.size(), -1) {}
 
     bool is_placed(int bond) const { return place_[at(bond)] >= 0; }
@@ -92,14 +92,14 @@ public:
     Neighbours near;  // of those that are not placed yet
 
 private:
-    Kind &kind_;
+    KernelKind &kind_;
     std::vector<int> place_, joined_;
     Pairs ordered_, entries_;
 };
 
 }  // namespace
 
-std::vector<int> eliminate_one_by_one(Kind &kind, std::int64_t max_entries) {
+std::vector<int> eliminate_one_by_one(KernelKind &kind, std::int64_t max_entries) {
     const int n = kind.n_bonds();
     if (n > max_entries + 1) return {};  // even a chain has more
     Order order(kind);
@@ -119,7 +119,7 @@ std::vector<int> eliminate_one_by_one(Kind &kind, std::int64_t max_entries) {
     return order.finished();
 }
 
-std::vector<int> eliminate_by_levels(Kind &kind) {
+std::vector<int> eliminate_by_levels(KernelKind &kind) {
     const int n = kind.n_bonds();
     const std::int64_t most = most_products_of_bond * n;
     if (least_products(kind) > most) return {};

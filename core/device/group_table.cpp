@@ -35,7 +35,7 @@ int shared_atom(const std::pair<int, int> &one, const std::pair<int, int> &other
 
 }  // namespace
 
-std::vector<int> group_table(const Kind &kind) {
+std::vector<int> group_table(const KernelKind &kind) {
     const auto &entries = kind.entries;  // sorted, so that those of a bond stand together
     const int n_bonds = kind.n_bonds(), n_entries = kind.n_entries();
     const auto place = [&](int one, int other) {

@@ -25,6 +25,6 @@ constexpr const char *parts_of_table[] = {
     "BONDS_OF_ATOMS",   // a bond + 1, negative where the atom is its second
 };
 
-std::vector<int> group_table(const Kind &kind);
+std::vector<int> group_table(const KernelKind &kind);
 
 }  // namespace holonomic::device

@@ -25,7 +25,7 @@ const char kernel_end[] = "        }\n    }\n}\n";
 // The statements that solve a molecule of a kind: all of them have names of their own within a case of the switch.
 class Writer {
 public:
-    explicit Writer(const Kind &of) : kind_(of), later_(of.bonds.size()) {
+    explicit Writer(const KernelKind &of) : kind_(of), later_(of.bonds.size()) {
         for (const auto &entry : kind_.entries) later_[at(entry.first)].push_back(entry.second);
     }
     std::string positions();
@@ -46,7 +46,7 @@ private:
     void move();
     void end(const char *store);
 
-    const Kind &kind_;
+    const KernelKind &kind_;
     std::vector<std::vector<int>> later_;  // bonds that are eliminated after each and have an entry with it
     bool symmetric_ = false;
     std::set<std::string> written_;

@@ -64,7 +64,7 @@ private:
 
     const std::int64_t max_entries_;
     Sorted sorted_;
-    std::map<Kind, std::size_t> known_;
+    std::map<KernelKind, std::size_t> known_;
     // By the ends of the bonds as a molecule has them; those with no kind are left out.
     std::map<Pairs, std::pair<bool, Arrangement>> arranged_;
 };
@@ -106,7 +106,7 @@ const Arrangement *Sorter::make(int n_atoms, const Pairs &ends) {
         named.emplace_back(std::minmax({arrangement.atoms[at(ends[k].first)], arrangement.atoms[at(ends[k].second)]}),
                            k);
     std::sort(named.begin(), named.end());
-    Kind kind{n_atoms, {}, {}, {}};
+    KernelKind kind{n_atoms, {}, {}, {}};
     for (const auto &bond : named) kind.bonds.push_back(bond.first);
     std::vector<int> placed = eliminate_one_by_one(kind, max_entries_);
     if (placed.empty()) placed = eliminate_by_levels(kind);

@@ -13,7 +13,7 @@ class Chains;
 namespace holonomic::device {
 
 // Bonds stand in the order of their elimination, each between two atoms of the molecule.
-struct Kind {
+struct KernelKind {
     int n_atoms;
     std::vector<std::pair<int, int>> bonds;
     // Pairs of bonds, first < second, whose entry in the matrix of the multipliers is not 0: those that share an atom,
@@ -26,18 +26,20 @@ struct Kind {
     int n_bonds() const { return static_cast<int>(bonds.size()); }
     int n_entries() const { return static_cast<int>(entries.size()); }
     bool is_for_group() const { return !levels.empty(); }
-    bool operator<(const Kind &other) const { return std::tie(n_atoms, bonds) < std::tie(other.n_atoms, other.bonds); }
+    bool operator<(const KernelKind &other) const {
+        return std::tie(n_atoms, bonds) < std::tie(other.n_atoms, other.bonds);
+    }
 };
 
 struct Member {
     std::int64_t number;          // of the molecule
-    std::vector<int> atoms;       // in the order of its Kind
-    std::vector<double> lengths;  // in the order of the bonds of its Kind
+    std::vector<int> atoms;       // in the order of its KernelKind
+    std::vector<double> lengths;  // in the order of the bonds of its KernelKind
 };
 
 struct Sorted {
     struct OfKind {
-        Kind kind;
+        KernelKind kind;
         std::vector<Member> members;
     };
     // Those for one work-item, then those with more than max_entries entries, which are for a work-group; the largest

@@ -22,9 +22,9 @@ constexpr int most_bonds_of_small = 6;
 constexpr int local_group = 64, global_group = 256;
 constexpr std::size_t local_bytes = 32000;  // each device has 32 KiB
 
-class Planner {
+class KernelPlanner {
 public:
-    Planner(const Chains &chains, Precision precision, std::int64_t max_entries)
+    KernelPlanner(const Chains &chains, Precision precision, std::int64_t max_entries)
         : precision_(precision), sorted_(sorted_by_kind(chains, max_entries)), masses_(at(chains.n_atoms())) {
         chains.masses(masses_.data());
         plan_.source = prologue(precision);
@@ -32,7 +32,7 @@ public:
         for (const std::int64_t molecule : sorted_.left) plan_.left.push_back(molecule + chains.base);
         split();
     }
-    Plan finished();
+    KernelPlan finished();
 
 private:
     void split();
@@ -42,29 +42,29 @@ private:
     void add_launch(std::int64_t n_groups, int group_size);
     std::int32_t numbers_of(const Member &member);
     std::int32_t next() const;
-    std::size_t room(const Kind &kind) const;
+    std::size_t room(const KernelKind &kind) const;
 
     const Precision precision_;
     Sorted sorted_;
     std::vector<double> masses_, numbers_;
     std::map<std::vector<double>, std::int32_t> known_;  // where molecules that are alike have their numbers
     std::size_t scratch_ = 0;                            // numbers
-    Plan plan_;
+    KernelPlan plan_;
 };
 
 // Numbers of a molecule in the kernels of a group, as group_source.cpp has them; in numbers that it calls mixed.
-std::size_t Planner::room(const Kind &kind) const {
+std::size_t KernelPlanner::room(const KernelKind &kind) const {
     const auto n_bonds = at(kind.n_bonds()), mixed = bytes_of_mixed(precision_);
     const std::size_t reals = 5 * n_bonds + 2 * at(kind.n_entries());
     return 3 * (at(kind.n_atoms) + n_bonds) + (reals * bytes_of_real(precision_) + mixed - 1) / mixed;
 }
 
 // A kernel takes the registers of its largest molecule, so that the small ones, water above all, have one of their own.
-void Planner::split() {
+void KernelPlanner::split() {
     const int n = static_cast<int>(sorted_.kinds.size());
     int n_large = 0, n_items = 0, n_global = 0;
     for (int k = 0; k < n; ++k) {
-        const Kind &kind = sorted_.kinds[at(k)].kind;
+        const KernelKind &kind = sorted_.kinds[at(k)].kind;
         if (!kind.is_for_group()) {
             n_items = k + 1;
             if (kind.n_bonds() > most_bonds_of_small) n_large = k + 1;
@@ -83,7 +83,7 @@ void Planner::split() {
 }
 
 // Where the next integers stand; all of them are named by 32 bits.
-std::int32_t Planner::next() const {
+std::int32_t KernelPlanner::next() const {
     constexpr std::size_t most = std::numeric_limits<std::int32_t>::max();
     if (plan_.integers.size() > most || numbers_.size() > most || scratch_ > most || 3 * masses_.size() > most)
         throw make_error(Status::unsupported, "the molecules are too many for the 32 bits of a device's indices");
@@ -91,7 +91,7 @@ std::int32_t Planner::next() const {
 }
 
 // Of the launch that is made: where its data begin, and how many slots there are.
-std::int32_t Planner::header(std::int64_t count) {
+std::int32_t KernelPlanner::header(std::int64_t count) {
     const std::int32_t begin = next();
     std::int32_t *const of_launch = &plan_.integers[2 * plan_.launches.size()];
     of_launch[0] = begin;
@@ -99,13 +99,13 @@ std::int32_t Planner::header(std::int64_t count) {
     return begin;
 }
 
-void Planner::add_launch(std::int64_t n_groups, int group_size) {
+void KernelPlanner::add_launch(std::int64_t n_groups, int group_size) {
     const std::string number = std::to_string(plan_.launches.size());
     plan_.launches.push_back({"hol_positions_" + number, "hol_velocities_" + number, n_groups, group_size});
 }
 
 // Inverse masses are relative to a power of two, so that floats hold them in any units.
-std::int32_t Planner::numbers_of(const Member &member) {
+std::int32_t KernelPlanner::numbers_of(const Member &member) {
     std::vector<double> values;
     double most = 0;
     for (const int atom : member.atoms) {
@@ -122,7 +122,7 @@ std::int32_t Planner::numbers_of(const Member &member) {
     return place.first->second;
 }
 
-void Planner::launch_items(int first, int last) {
+void KernelPlanner::launch_items(int first, int last) {
     if (first == last) return;
     std::int64_t n_batches = 0;
     for (int k = first; k < last; ++k)
@@ -153,7 +153,7 @@ void Planner::launch_items(int first, int last) {
     add_launch(n_batches, batch_width);
 }
 
-void Planner::launch_groups(int first, int last, bool in_local_memory) {
+void KernelPlanner::launch_groups(int first, int last, bool in_local_memory) {
     if (first == last) return;
     std::int64_t n_molecules = 0;
     std::size_t largest = 0;
@@ -186,7 +186,7 @@ void Planner::launch_groups(int first, int last, bool in_local_memory) {
 }
 
 // No array is empty, since a device makes none of no bytes.
-Plan Planner::finished() {
+KernelPlan KernelPlanner::finished() {
     next();
     if (plan_.integers.empty()) plan_.integers.push_back(0);
     if (numbers_.empty()) numbers_.push_back(0);
@@ -203,11 +203,11 @@ Plan Planner::finished() {
 
 }  // namespace
 
-Plan make_plan(const Chains &chains, Precision precision, std::int64_t max_entries) {
+KernelPlan make_plan(const Chains &chains, Precision precision, std::int64_t max_entries) {
     if (max_entries > most_entries)
         throw make_error(Status::value, "max_entries is %lld; it must be at most %lld",
                          static_cast<long long>(max_entries), static_cast<long long>(most_entries));
-    return Planner(chains, precision, max_entries < 0 ? default_entries : max_entries).finished();
+    return KernelPlanner(chains, precision, max_entries < 0 ? default_entries : max_entries).finished();
 }
 
 }  // namespace holonomic::device

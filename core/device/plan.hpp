@@ -20,7 +20,7 @@ struct Launch {
     int group_size;
 };
 
-struct Plan {
+struct KernelPlan {
     std::string source;
     std::vector<std::int32_t> integers;
     std::vector<unsigned char> numbers;  // floats or doubles, by the precision
@@ -35,6 +35,6 @@ struct Plan {
 constexpr std::int64_t default_entries = 70, most_entries = 1000;
 
 // Throws Error.
-Plan make_plan(const Chains &chains, Precision precision, std::int64_t max_entries);
+KernelPlan make_plan(const Chains &chains, Precision precision, std::int64_t max_entries);
 
 }  // namespace holonomic::device

@@ -4,9 +4,9 @@
 
 #include "core/index.hpp"
 #include "core/molecules/planned/elimination_plan.hpp"
-#include "core/run/apart.hpp"
 #include "core/run/execute.hpp"
 #include "core/run/lane.hpp"
+#include "core/run/staging.hpp"
 
 namespace holonomic {
 
@@ -60,17 +60,17 @@ struct KeepWork final : KeptWork {
     }
 };
 
-struct SolveWork final : KeptWork {
+struct KeptSolveWork final : KeptWork {
     const Variants<KeptCall> variants;  // of a single call
     const KeptCall *const calls;
     const int n_calls;
-    SolveWork(const Chains &chains, const KeptCall *given, int n, Apart &apart)
+    KeptSolveWork(const Chains &chains, const KeptCall *given, int n, Staging &staging)
         : KeptWork(chains, given->left), variants(
-                                             *given, apart,
+                                             *given, staging,
                                              [&](KeptCall &c) {
-                                                 c.rhs = apart.inputs(given->rhs);
-                                                 c.lambda = apart.results(given->lambda);
-                                                 c.tension = apart.results(given->tension);
+                                                 c.rhs = staging.inputs(given->rhs);
+                                                 c.lambda = staging.results(given->lambda);
+                                                 c.tension = staging.results(given->tension);
                                              },
                                              [](KeptCall &) {}),
           calls(given), n_calls(n) {}
@@ -103,9 +103,9 @@ void keep(const Chains &chains, const KeepCall &call) {
 }
 
 Tally solve_kept(const Chains &chains, const KeptCall *calls, int n) {
-    Apart apart(chains);
-    const Tally tally = execute(chains, SolveWork(chains, calls, n, apart));
-    apart.put_back();
+    Staging staging(chains);
+    const Tally tally = execute(chains, KeptSolveWork(chains, calls, n, staging));
+    staging.put_back();
     for (int k = 0; k < n; ++k) {
         clear_unconstrained(chains, calls[k].lambda);
         clear_unconstrained(chains, calls[k].tension);

@@ -28,7 +28,7 @@ std::vector<PairVector> bond_vectors(const Molecule &m, const AtomArray &r, cons
         read_atom(r, m.atom(m.j(k)), to);
         DoublePair d[3];
         for (int c = 0; c < 3; ++c) d[c] = plain::two_difference(to[c], from[c]);
-        if (box.shape != Box::none) minimum_image(box, d);
+        if (box.lattice != Box::none) minimum_image(box, d);
         bonds.push_back({d[0], d[1], d[2]});
     }
     return bonds;
@@ -45,7 +45,7 @@ ScaledBond scaled(const PairVector &d) {
     return s;
 }
 
-Joint joint_between(const ScaledBond &a, const ScaledBond &b) {
+BondAngle angle_between(const ScaledBond &a, const ScaledBond &b) {
     const double lengths = a.length * b.length;
     double cosine = plain::dot_compensated(a.hi, a.lo, b.hi, b.lo) / lengths;
     if (std::fabs(cosine) < 1e-15) cosine = dot_exact(a.hi, a.lo, b.hi, b.lo) / lengths;

@@ -20,10 +20,10 @@ struct ScaledBond {
 };
 ScaledBond scaled(const PairVector &d);
 
-struct Joint {
+struct BondAngle {
     double cosine;      // of the angle between neighbouring bonds, with its sign
     double complement;  // 1 - |cosine|, right to a few roundings however small
 };
-Joint joint_between(const ScaledBond &a, const ScaledBond &b);
+BondAngle angle_between(const ScaledBond &a, const ScaledBond &b);
 
 }  // namespace holonomic

@@ -17,12 +17,12 @@ ChainInverse::ChainInverse(const Chains &chains, std::int64_t chain, const AtomA
         atoms_[k] = m.atom(static_cast<std::int64_t>(k));
         w_[k] = m.w(static_cast<std::int64_t>(k));
     }
-    std::vector<Joint> joints(n_ + 1, Joint{0, 1});  // k: between bonds k-1 and k
+    std::vector<BondAngle> joints(n_ + 1, BondAngle{0, 1});  // k: between bonds k-1 and k
     ScaledBond before{};
     bool good = true;
     for (std::size_t k = 0; k < n_; ++k) {
         const ScaledBond here = scaled(d_[k]);
-        if (k > 0) joints[k] = joint_between(before, here);
+        if (k > 0) joints[k] = angle_between(before, here);
         bonds_[k].length = std::scalbn(here.length, here.exponent);
         good = good && here.length > 0 && std::isfinite(here.length);
         before = here;

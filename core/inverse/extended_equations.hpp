@@ -14,10 +14,10 @@
 namespace holonomic::HOL_ISA::extended {
 
 // Memory that the solver's parts are taken from, aligned to 64.
-class Owned {
+class AlignedMemory {
 public:
-    explicit Owned(int64_t bytes) : memory_(static_cast<std::size_t>(bytes) + 64) {}
-    Memory begin() {
+    explicit AlignedMemory(int64_t bytes) : memory_(static_cast<std::size_t>(bytes) + 64) {}
+    ByteArena begin() {
         const std::uintptr_t address = reinterpret_cast<std::uintptr_t>(memory_.data());
         return {memory_.data() + (64 - address % 64) % 64};
     }
@@ -40,7 +40,7 @@ public:
         lane_.w = w_.data();
         good_ = solution_.open(r, box, true);
         if (!good_) return;
-        const Molecule &own = solution_.m;
+        const ScaledMolecule &own = solution_.m;
         for (int32_t k = 0; k < plan_.n_bonds; ++k)
             root_.push_back(
                 std::sqrt((own.w[plan_.atom_i[k]] + own.w[plan_.atom_j[k]]) * rounded(dot(own.d[k], own.d[k]))));
@@ -56,9 +56,10 @@ public:
     std::vector<double> inverse_row(int64_t i) const override {
         const std::size_t n = static_cast<std::size_t>(plan_.n_bonds);
         // Solving writes into memory of its own.
-        Owned owned(int64_t(sizeof(Wide)) * 6 * plan_.n_bonds + int64_t(sizeof(Wide3)) * plan_.n_atoms + 64 * 10);
-        Memory memory = owned.begin();
-        System own = solution_.system;
+        AlignedMemory owned(int64_t(sizeof(Wide)) * 6 * plan_.n_bonds + int64_t(sizeof(Wide3)) * plan_.n_atoms +
+                            64 * 10);
+        ByteArena memory = owned.begin();
+        ExtendedSystem own = solution_.system;
         for (Wide **array : {&own.rest, &own.change, &own.tree.y_up, &own.tree.y_down})
             *array = memory.take<Wide>(plan_.n_bonds);
         own.ring.y = own.graph.y = own.tree.y_up;
@@ -85,7 +86,7 @@ public:
     }
 
     double largest_row() const override {
-        const Molecule &m = solution_.m;
+        const ScaledMolecule &m = solution_.m;
         std::vector<double> sum(root_.size(), 1.0);
         for (int32_t i = 0; i < plan_.n_atoms; ++i)
             for (int32_t a = plan_.arm_start[i]; a < plan_.arm_start[i + 1]; ++a)
@@ -104,10 +105,10 @@ private:
     std::vector<int64_t> atoms_;
     std::vector<double> w_, root_;
     MoleculeLane lane_;
-    Owned owned_;
-    Memory memory_;
+    AlignedMemory owned_;
+    ByteArena memory_;
     ExtendedPlan plan_;
-    Solution solution_;
+    ExtendedSolution solution_;
     bool good_ = false;
 };
 

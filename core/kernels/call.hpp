@@ -34,9 +34,10 @@ struct Lane {
 struct Unit {
     const Lane *lanes;
     int64_t count;
-    bool regular;  // all `count` chains are like lanes[0], over consecutive atoms and bonds; else lanes[count], loose
-    bool large;    // the caller's arrays are unlikely to be in cache
-    bool roomy = false;  // as many atoms as there are lanes may be read behind the last chain
+    bool regular;         // all `count` chains are like lanes[0], over consecutive atoms and bonds; else lanes[count],
+                          // irregular
+    bool large;           // the caller's arrays are unlikely to be in cache
+    bool padded = false;  // as many atoms as there are lanes may be read behind the last chain
 };
 
 // One molecule that is no chain, as a kernel sees it. Its atoms and bonds are numbered as in its shape.
@@ -74,7 +75,7 @@ struct MoleculeUnit {
     const LongTeam *team = nullptr;  // of a single large molecule
     const TreeBatch *tree_batches = nullptr;
     int64_t n_batches = 0;
-    bool roomy = false;  // as in Unit
+    bool padded = false;  // as in Unit
 };
 
 // Chains of more bonds are cut into segments.
@@ -84,7 +85,7 @@ constexpr int64_t longest_lane = 256;
 constexpr int most_lanes = 16;
 
 struct Box {
-    enum Shape { none, orthorhombic, triclinic } shape;
+    enum Lattice { none, orthorhombic, triclinic } lattice;
     double h[9];        // row i is box vector i
     double inverse[9];  // fractional coordinate i of d is sum_c d_c inverse[3 c + i]
     // orthorhombic: minus the sides and their inverses for components x y z x y z ..
@@ -277,13 +278,13 @@ struct KeptKernels {
 };
 
 // The kernels of one instruction set. `scratch` has scratch_bytes(bonds of the longest chain), aligned to 64; for long
-// chains piece_bytes.
+// chains cut_bytes.
 struct Kernels {
     const char *name;
     int lanes;
     bool fused;  // products and sums are rounded once
     int64_t (*scratch_bytes)(int64_t n_bonds);
-    int64_t piece_bytes;
+    int64_t cut_bytes;
     void (*forces)(const ForcesCall &, const Unit &, double *scratch, Tally &);
     void (*velocities)(const VelocitiesCall &, const Unit &, double *scratch, Tally &);
     void (*positions)(const PositionsCall &, const Unit &, double *scratch, Tally &);

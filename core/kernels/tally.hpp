@@ -34,16 +34,15 @@ static inline void count_moved(Tally &tally, int n, int64_t solves) {
     if (solves > tally.iterations) tally.iterations = solves;
 }
 
-static inline void add(Tally &total, const Tally &piece) {
-    for (int i = 0; i < 6; ++i) total.virial[i] += piece.virial[i];
-    if (piece.n_bad > 0 && (total.n_bad == 0 || piece.first_bad < total.first_bad)) total.first_bad = piece.first_bad;
-    total.n_bad += piece.n_bad;
-    total.log_det += piece.log_det;
-    total.log_det_z += piece.log_det_z;
-    if (piece.iterations > total.iterations) total.iterations = piece.iterations;
-    total.n_corrected += piece.n_corrected;
-    if (piece.worst_chain >= 0 && take_worst(total, piece.worst, piece.worst_chain))
-        total.worst_bond = piece.worst_bond;
+static inline void add(Tally &total, const Tally &part) {
+    for (int i = 0; i < 6; ++i) total.virial[i] += part.virial[i];
+    if (part.n_bad > 0 && (total.n_bad == 0 || part.first_bad < total.first_bad)) total.first_bad = part.first_bad;
+    total.n_bad += part.n_bad;
+    total.log_det += part.log_det;
+    total.log_det_z += part.log_det_z;
+    if (part.iterations > total.iterations) total.iterations = part.iterations;
+    total.n_corrected += part.n_corrected;
+    if (part.worst_chain >= 0 && take_worst(total, part.worst, part.worst_chain)) total.worst_bond = part.worst_bond;
 }
 
 // Counts a molecule, by its number, as bad.

@@ -40,7 +40,7 @@ void Chains::box_changed(const Box &next, Box &seen) {
         size = std::max(size, std::fabs(seen.h[i]));
         change = std::max(change, std::fabs(next.h[i] - seen.h[i]));
     }
-    if (next.shape == seen.shape && !(change > small * size)) return;
+    if (next.lattice == seen.lattice && !(change > small * size)) return;
     seen = next;
     fits_.set(false);
 }

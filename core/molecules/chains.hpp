@@ -18,6 +18,7 @@
 #include "core/molecules/given/molecule.hpp"
 #include "core/molecules/given/shape.hpp"
 #include "core/molecules/planned/plan.hpp"
+#include "core/molecules/settings.hpp"
 
 namespace holonomic {
 
@@ -25,7 +26,7 @@ namespace rigid {
 class Bodies;
 struct Cliques;
 struct Given;
-struct LooseParts;
+struct AffineParts;
 }  // namespace rigid
 
 // What a bond is. The values are those of hol_role, which capi/queries.cpp asserts.
@@ -36,7 +37,7 @@ enum class Checks { never = 0, at_start = 1, always = 2 };
 
 class Batch;
 
-class Chains {
+class Chains : public Settings {
 public:
     Chains(std::int64_t n_atoms, const double *masses);
     Chains(const Chains &);  // shares what has been found out about shapes
@@ -154,7 +155,7 @@ public:
     Unit unit(const Plan &plan, const Plan::Chunk &chunk, Lane *lane) const;  // lane: memory for the first of a group
     MoleculeUnit unit(const Plan &plan, const Plan::Chunk &chunk, MoleculeLane *lane) const;
     MoleculeUnit unit_of_group(const Plan &plan, const Plan::Chunk &chunk, MoleculeLane *lane) const;
-    std::int64_t chunk_bonds(const Plan::Chunk &chunk) const;  // of one molecule of the chunk; 0 if loose ones
+    std::int64_t chunk_bonds(const Plan::Chunk &chunk) const;  // of one molecule of the chunk; 0 if gathered ones
     const std::vector<std::int64_t> &reordered_bonds() const { return groups_.reordered(); }
     const std::vector<std::int64_t> &unconstrained() const { return unconstrained_; }
     // Whether a bond was given from the atom at which it ends here; by its place in the caller's arrays.
@@ -175,16 +176,6 @@ public:
     // after a change of the molecules, their lengths or the box. Thread-safe: several threads may find that it is so.
     bool wants_fit() const { return checks_ == Checks::always || (checks_ == Checks::at_start && !fits_.get()); }
     void note_fit() const { fits_.set(true); }
-
-    int base = 0;  // set_base
-    int n_threads = 1;
-    double tolerance = 0;
-    double length_tolerance = 1e-3;  // by what part lengths of bodies are adjusted, at most (rigid/fit.hpp)
-    int max_iterations = 50;
-    bool keeps_outcomes = false;    // core/run/outcomes.hpp
-    bool finds_bodies = true;       // in lists of bonds whose lengths depend on each other; else they are refused
-    std::int64_t memory_limit = 0;  // bytes; 0: the default (memory_limit.hpp)
-    Cell box{};
 
 private:
     friend class Batch;
@@ -216,14 +207,14 @@ private:
     std::vector<rigid::Given> sort_rigid(std::int64_t n_bodies, const std::int64_t *sizes, const std::int64_t *atoms,
                                          std::int64_t offset, const double *places, std::int64_t n_bonds,
                                          const std::int64_t *pairs, const double *lengths,
-                                         const rigid::LooseParts *parts = nullptr) const;
+                                         const rigid::AffineParts *parts = nullptr) const;
     // `also`, of another addition in the same call: done when nothing else can fail but it.
     void commit_rigid(const std::vector<rigid::Given> &molecules, std::int64_t n_bonds, Batch *also = nullptr);
     // Bond k of the list has the length lengths[k % n_lengths]. Parts that depend become bodies (rigid/cliques.hpp).
     void add_listed(const BondList &list, const double *lengths, std::int64_t n_lengths);
     void add_with_bodies(const BondList &list, const double *lengths, std::int64_t n_lengths);
-    rigid::LooseParts take_linear(const BondList &list, const double *lengths, std::int64_t n_lengths,
-                                  rigid::Cliques &cliques, std::vector<unsigned char> &implied) const;
+    rigid::AffineParts take_linear(const BondList &list, const double *lengths, std::int64_t n_lengths,
+                                   rigid::Cliques &cliques, std::vector<unsigned char> &implied) const;
     std::unique_ptr<rigid::Bodies> rebuild_bodies(const Masses &masses, const double *lengths) const;
     double longest() const;
     template <class Each>

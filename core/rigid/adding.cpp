@@ -108,13 +108,13 @@ BodyName name_of_body(const Chains &chains, const rigid::Given &given, std::int6
 }
 
 // A body that its lengths have made stays as it is, and so do flat and straight groups.
-void give_length(const rigid::Shape &shape, std::size_t bond, double length, rigid::Given &given) {
+void give_length(const rigid::MoleculeKind &kind, std::size_t bond, double length, rigid::Given &given) {
     const double old = given.bonds[bond].length;
     given.bonds[bond].length = length;
-    const rigid::Bond &its = shape.bonds[bond];
-    const auto part = [&](std::int32_t atom) { return atom < shape.n_held ? shape.part_of[at(atom)] : -1 - atom; };
+    const rigid::Bond &its = kind.bonds[bond];
+    const auto part = [&](std::int32_t atom) { return atom < kind.n_held ? kind.part_of[at(atom)] : -1 - atom; };
     const bool within = part(its.i) == part(its.j);
-    if (!shape.by_lengths || !within) return;
+    if (!kind.by_lengths || !within) return;
     if (!(std::fabs(length - old) <= rigid::same_length * old))
         throw rigid::Refusal{
             rigid::Refusal::of_bonds, {}, {rigid::Unsolvable::length_in_body, static_cast<std::int32_t>(bond)}, -1};
@@ -124,17 +124,18 @@ void give_length(const rigid::Shape &shape, std::size_t bond, double length, rig
 }  // namespace
 
 void Chains::add_rigid(std::int64_t n_bodies, const std::int64_t *sizes, const std::int64_t *atoms,
-                       const double *places, std::int64_t n_bonds, const std::int64_t *pairs, const double *lengths) {
+                       const double *coordinates, std::int64_t n_bonds, const std::int64_t *pairs,
+                       const double *lengths) {
     const std::int64_t n_held = check_sizes(n_bodies, sizes, n_bonds, base);
     if (n_bodies == 0 && n_bonds == 0) return;
     check_memory(*this, n_held + n_bonds, bytes_of_body_atom);
     check_lengths(n_bonds, lengths, base);
-    commit_rigid(sort_rigid(n_bodies, sizes, atoms, 0, places, n_bonds, pairs, lengths), n_bonds);
+    commit_rigid(sort_rigid(n_bodies, sizes, atoms, 0, coordinates, n_bonds, pairs, lengths), n_bonds);
 }
 
 void Chains::add_rigid_molecules(std::int64_t count, std::int64_t n_atoms, std::int64_t first_atom,
                                  std::int64_t n_bodies, const std::int64_t *sizes, const std::int64_t *atoms,
-                                 const double *places, std::int64_t n_bonds, const std::int64_t *pairs,
+                                 const double *coordinates, std::int64_t n_bonds, const std::int64_t *pairs,
                                  const double *lengths) {
     const std::int64_t n_held = check_sizes(n_bodies, sizes, n_bonds, base);
     check_lengths(n_bonds, lengths, base);
@@ -145,8 +146,8 @@ void Chains::add_rigid_molecules(std::int64_t count, std::int64_t n_atoms, std::
     check_of_molecule(pairs, 2 * n_bonds, n_atoms, true);
     commit_rigid(copies_of(count, n_atoms, n_bonds,
                            [&](std::int64_t m) {
-                               return sort_rigid(n_bodies, sizes, atoms, first + m * n_atoms, places, n_bonds, pairs,
-                                                 lengths);
+                               return sort_rigid(n_bodies, sizes, atoms, first + m * n_atoms, coordinates, n_bonds,
+                                                 pairs, lengths);
                            }),
                  count * n_bonds);
 }
@@ -177,7 +178,7 @@ void Chains::check_of_molecule(const std::int64_t *list, std::int64_t n, std::in
 std::vector<rigid::Given> Chains::copies_of(std::int64_t count, std::int64_t n_atoms, std::int64_t n_bonds,
                                             const std::function<std::vector<rigid::Given>(std::int64_t)> &make) const {
     std::vector<rigid::Given> all;
-    // Where masses are those of the first copy at the same places, the molecules are its own.
+    // Where masses are those of the first copy at the same coordinates, the molecules are its own.
     const std::vector<rigid::Given> model = make(0);
     for (std::int64_t m = 0; m < count; ++m) {
         std::vector<rigid::Given> copy = model;
@@ -207,7 +208,7 @@ void Chains::add_with_bodies(const BondList &list, const double *lengths, std::i
     std::vector<unsigned char> implied = rigid::implied_bonds(masses_, list, lengths, n_lengths, cliques);
     if (!cliques.shared.empty() || std::count(implied.begin(), implied.end(), 1) > 0)
         cliques = rigid::find_cliques(masses_, list, lengths, n_lengths, length_tolerance, implied);
-    rigid::LooseParts parts;
+    rigid::AffineParts parts;
     const bool has_points = std::count(lengths, lengths + n_lengths, 0.0) > 0;
     if (!cliques.linear.empty() || has_points) parts = take_linear(list, lengths, n_lengths, cliques, implied);
     FoundMolecules found;
@@ -257,8 +258,8 @@ void Chains::add_with_bodies(const BondList &list, const double *lengths, std::i
     if (!finds_bodies) refuse_body(*this, cliques);
     std::vector<rigid::Given> molecules =
         sort_rigid(static_cast<std::int64_t>(cliques.sizes.size()), cliques.sizes.data(), cliques.atoms.data(), 0,
-                   cliques.places.data(), static_cast<std::int64_t>(its_lengths.size()), pairs.data(),
-                   its_lengths.data(), parts.loose.empty() ? nullptr : &parts);
+                   cliques.coordinates.data(), static_cast<std::int64_t>(its_lengths.size()), pairs.data(),
+                   its_lengths.data(), parts.affine.empty() ? nullptr : &parts);
     for (rigid::Given &given : molecules) {
         given.by_lengths = true;
         for (std::int64_t &bond : given.bond_numbers) bond = n_bonds_ + of_bodies[at(bond - n_bonds_)];
@@ -318,7 +319,7 @@ std::unique_ptr<rigid::Bodies> Chains::rebuild_bodies(const Masses &masses, cons
         }
         try {
             for (std::size_t k = 0; lengths && k < given.bonds.size(); ++k)
-                give_length(bodies_->shape(m), k, lengths[given.bond_numbers[k]], given);
+                give_length(bodies_->kind(m), k, lengths[given.bond_numbers[k]], given);
             next->add(given);
         } catch (const rigid::Refusal &refusal) {
             refuse(*this, given, refusal);

@@ -32,11 +32,11 @@ void check(const rigid::LinearRelation &one, std::int64_t number, int base) {
                           "has coefficients that do not add up to 0: it would hold atoms relative to the origin");
 }
 
-// Relations as loose parts.
+// Relations as affine parts.
 struct RelatedParts {
     std::vector<std::int64_t> sizes, atoms;
-    std::vector<double> places;
-    rigid::LooseParts parts;
+    std::vector<double> coordinates;
+    rigid::AffineParts parts;
 };
 
 // atoms: counted from the base, those of the first copy `first` further on. Throws Error.
@@ -75,7 +75,7 @@ RelatedParts parts_of(const Chains &chains, const Masses &masses, std::int64_t n
         atoms += sizes[k];
         coefficients += sizes[k];
     }
-    const rigid::Linear groups(all, 1e-10);
+    const rigid::LinearParts groups(all, 1e-10);
     if (groups.left_out() >= 0) throw of_relation(groups.left_out(), base, "follows from the others");
     double longest = 0;
     for (std::int64_t k = 0; k < n_bonds; ++k) longest = std::max(longest, lengths[k]);
@@ -83,10 +83,10 @@ RelatedParts parts_of(const Chains &chains, const Masses &masses, std::int64_t n
         const std::vector<std::int64_t> &its = groups.parts()[p];
         found.sizes.push_back(static_cast<std::int64_t>(its.size()));
         found.atoms.insert(found.atoms.end(), its.begin(), its.end());
-        found.parts.loose.push_back({groups.relations()[p], longest > 0 ? longest : 1, {}});
+        found.parts.affine.push_back({groups.relations()[p], longest > 0 ? longest : 1, {}});
         found.parts.fixed.push_back(groups.fixed()[p]);
     }
-    found.places.assign(3 * found.atoms.size(), 0);
+    found.coordinates.assign(3 * found.atoms.size(), 0);
     return found;
 }
 
@@ -100,7 +100,7 @@ void Chains::add_linear(std::int64_t n_relations, const std::int64_t *sizes, con
         parts_of(*this, masses_, n_atoms_, 0, n_relations, sizes, atoms, coefficients, n_bonds, lengths);
     check_memory(*this, static_cast<std::int64_t>(its.atoms.size()) + n_bonds, bytes_of_body_atom);
     commit_rigid(sort_rigid(static_cast<std::int64_t>(its.sizes.size()), its.sizes.data(), its.atoms.data(), 0,
-                            its.places.data(), n_bonds, pairs, lengths, &its.parts),
+                            its.coordinates.data(), n_bonds, pairs, lengths, &its.parts),
                  n_bonds);
 }
 
@@ -123,17 +123,17 @@ void Chains::add_linear_molecules(std::int64_t count, std::int64_t n_atoms, std:
                                                              : parts_of(*this, masses_, n_atoms, offset, n_relations,
                                                                         sizes, atoms, coefficients, n_bonds, lengths);
                                return sort_rigid(static_cast<std::int64_t>(here.sizes.size()), here.sizes.data(),
-                                                 here.atoms.data(), offset, here.places.data(), n_bonds, pairs, lengths,
-                                                 &here.parts);
+                                                 here.atoms.data(), offset, here.coordinates.data(), n_bonds, pairs,
+                                                 lengths, &here.parts);
                            }),
                  count * n_bonds);
 }
 
-// Linear groups as loose parts, behind the bodies; and what they imply. Bonds of length zero are relations.
-rigid::LooseParts Chains::take_linear(const BondList &list, const double *lengths, std::int64_t n_lengths,
-                                      rigid::Cliques &cliques, std::vector<unsigned char> &implied) const {
-    const rigid::Linear groups = rigid::Linear::of_groups(cliques.linear.all());
-    rigid::LooseParts parts;
+// Linear groups as affine parts, behind the bodies; and what they imply. Bonds of length zero are relations.
+rigid::AffineParts Chains::take_linear(const BondList &list, const double *lengths, std::int64_t n_lengths,
+                                       rigid::Cliques &cliques, std::vector<unsigned char> &implied) const {
+    const rigid::LinearParts groups = rigid::LinearParts::of_groups(cliques.linear.all());
+    rigid::AffineParts parts;
     double longest = 0;
     for (const std::int64_t k : cliques.linear_bonds) longest = std::max(longest, lengths[k % n_lengths]);
     for (const std::int64_t k : rigid::implied_beside(groups, masses_, list, lengths, n_lengths, cliques)) {
@@ -148,13 +148,13 @@ rigid::LooseParts Chains::take_linear(const BondList &list, const double *length
         implied[at(k)] = 1;
         parts.links.emplace_back(i, j);
     }
-    parts.loose.resize(cliques.sizes.size());
+    parts.affine.resize(cliques.sizes.size());
     for (std::size_t p = 0; p < groups.parts().size(); ++p) {
         const std::vector<std::int64_t> &atoms = groups.parts()[p];
         cliques.sizes.push_back(static_cast<std::int64_t>(atoms.size()));
         cliques.atoms.insert(cliques.atoms.end(), atoms.begin(), atoms.end());
-        cliques.places.resize(cliques.places.size() + 3 * atoms.size(), 0);
-        parts.loose.push_back({groups.relations()[p], longest > 0 ? longest : 1, {}});
+        cliques.coordinates.resize(cliques.coordinates.size() + 3 * atoms.size(), 0);
+        parts.affine.push_back({groups.relations()[p], longest > 0 ? longest : 1, {}});
     }
     return parts;
 }

@@ -11,7 +11,7 @@ namespace holonomic::rigid {
 static_assert(std::is_standard_layout_v<Step> && sizeof(Step) == 2 * sizeof(std::int32_t),
               "BodyKind has them in pairs");
 
-BodyKind kind_of(const Body &body, const Shape &shape) {
+BodyKind kind_of(const Body &body, const MoleculeKind &molecule) {
     const std::ptrdiff_t n = std::ptrdiff_t{body.n_atoms} * (1 + body.rank);
     const double *const weights = body.weights.data();
     BodyKind kind{};
@@ -42,12 +42,12 @@ BodyKind kind_of(const Body &body, const Shape &shape) {
     kind.scale = 1 - kind.excess[0][0];
     kind.height = body.height.empty() ? nullptr : body.height.data();
     kind.masses = body.masses.data();
-    kind.place = weights;
+    kind.coordinates = weights;
     kind.share = weights + n;
-    kind.steps = &shape.steps.data()->atom;
+    kind.steps = &molecule.steps.data()->atom;
     return kind;
 }
 
-std::int64_t bytes_of_block(const Shape &shape) { return kernels().bodies.scratch_bytes(shape.n_atoms); }
+std::int64_t bytes_of_block(const MoleculeKind &molecule) { return kernels().bodies.scratch_bytes(molecule.n_atoms); }
 
 }  // namespace holonomic::rigid

@@ -6,12 +6,12 @@
 #include <unordered_set>
 #include <vector>
 
-#include "core/rigid/shape.hpp"
+#include "core/rigid/molecule_kind.hpp"
 
 namespace holonomic::rigid {
 
-// What makes a part a loose one: relations among its atoms, though there may be none. A rigid body has no such atoms.
-struct Loose {
+// What makes a part an affine one: relations among its atoms, though there may be none. A rigid body has no such atoms.
+struct AffinePart {
     Relations relations;
     double extent = 0;
     std::vector<std::int32_t> fixed;  // atoms of the molecule, as the relations have them
@@ -22,14 +22,14 @@ struct Loose {
 struct Given {
     std::vector<std::int32_t> sizes;  // of the bodies
     std::vector<std::int64_t> atoms;  // bodies' atoms, others that can move, fixed ones
-    std::vector<double> place;        // [atoms of bodies][3]
+    std::vector<double> coordinates;  // [atoms of bodies][3]
     std::vector<double> masses;       // [atoms], 0: site; of fixed atoms 0
     std::int32_t n_movable = 0;
     std::vector<Bond> bonds;
     std::vector<std::int64_t> bond_numbers;  // in the arrays per bond
     bool has_images = false;                 // of its bonds, which are told (images.cpp)
     bool by_lengths = false;                 // bonds within bodies are what holds these, and have multipliers
-    std::vector<Loose> loose;                // of the bodies, or empty: all are rigid
+    std::vector<AffinePart> affine;          // of the bodies, or empty: all are rigid
     std::vector<Bond> hidden;                // distances that are held and are no bonds of the caller's
     std::vector<Step> links;                 // pairs of atoms between which nearest images are taken where no bond is
 };
@@ -45,12 +45,12 @@ struct Refusal {
 class Bodies {
 public:
     std::int64_t n_molecules() const { return static_cast<std::int64_t>(molecules_.size()); }
-    std::int64_t n_shapes() const { return static_cast<std::int64_t>(shapes_.size()); }
-    const Shape &shape(std::int64_t molecule) const {
-        return shapes_[static_cast<std::size_t>(molecules_[static_cast<std::size_t>(molecule)].shape)];
+    std::int64_t n_kinds() const { return static_cast<std::int64_t>(kinds_.size()); }
+    const MoleculeKind &kind(std::int64_t molecule) const {
+        return kinds_[static_cast<std::size_t>(molecules_[static_cast<std::size_t>(molecule)].kind)];
     }
-    std::int32_t shape_number(std::int64_t molecule) const {
-        return molecules_[static_cast<std::size_t>(molecule)].shape;
+    std::int32_t kind_number(std::int64_t molecule) const {
+        return molecules_[static_cast<std::size_t>(molecule)].kind;
     }
     const std::int64_t *atoms(std::int64_t molecule) const {
         return atoms_.data() + molecules_[static_cast<std::size_t>(molecule)].first_atom;
@@ -58,8 +58,8 @@ public:
     const std::int64_t *bonds(std::int64_t molecule) const {
         return bonds_.data() + molecules_[static_cast<std::size_t>(molecule)].first_bond;
     }
-    const Body *kinds() const { return kinds_.data(); }
-    const Body &body(const Part &part) const { return kinds_[static_cast<std::size_t>(part.body)]; }
+    const Body *body_kinds() const { return body_kinds_.data(); }
+    const Body &body(const Part &part) const { return body_kinds_[static_cast<std::size_t>(part.body)]; }
     bool all_active() const { return active_.empty(); }
     bool is_active(std::int64_t molecule) const {
         return all_active() || active_[static_cast<std::size_t>(molecule)] != 0;
@@ -83,7 +83,7 @@ public:
     // Adds a molecule. Throws Refusal or std::bad_alloc; roll_back then takes away what has been added since.
     void add(const Given &given);
     struct Mark {
-        std::size_t molecules, kinds, shapes, atoms, bonds, fixed, active;
+        std::size_t molecules, body_kinds, kinds, atoms, bonds, fixed, active;
         double longest;
         std::int64_t scratch_bytes, block_bytes, work;
     };
@@ -94,16 +94,16 @@ public:
 
 private:
     struct Molecule {
-        std::int32_t shape;
+        std::int32_t kind;
         bool consecutive;  // its atoms stand one behind the other
         std::int64_t first_atom, first_bond;
     };
-    std::int32_t find_shape(const Given &given);
-    std::int32_t find_body(std::int32_t n, const double *masses, const double *place, const Loose *loose);
+    std::int32_t find_kind(const Given &given);
+    std::int32_t find_body(std::int32_t n, const double *masses, const double *coordinates, const AffinePart *affine);
 
-    std::vector<Body> kinds_;
-    std::unordered_multimap<std::uint64_t, std::int32_t> kind_of_hash_, shape_of_hash_;
-    std::vector<Shape> shapes_;
+    std::vector<Body> body_kinds_;
+    std::unordered_multimap<std::uint64_t, std::int32_t> body_of_hash_, kind_of_hash_;
+    std::vector<MoleculeKind> kinds_;
     std::vector<Molecule> molecules_;
     std::vector<std::int64_t> atoms_, bonds_, fixed_;
     std::unordered_set<std::int64_t> sites_;

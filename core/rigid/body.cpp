@@ -70,9 +70,9 @@ Axes axes_of(DoublePair s[3][3]) {
     return found;
 }
 
-// Places and shares as kernels have them, for axes of length 1, rounded; and what that leaves off their product. Shares
-// are too large by 1/1600: were it the rounding alone, what kernels take off would be less than half a unit of the last
-// digit, and lost, or a whole one, each time in the same way.
+// Coordinates and shares as kernels have them, for axes of length 1, rounded; and what that leaves off their product.
+// Shares are too large by 1/1600: were it the rounding alone, what kernels take off would be less than half a unit of
+// the last digit, and lost, or a whole one, each time in the same way.
 void set_weights(Body &body) {
     const std::int64_t n = body.n_atoms, K = 1 + body.rank;
     std::vector<double> &weights = body.weights;
@@ -138,12 +138,12 @@ void lift(Body &body, std::int32_t site, const DoublePair &height) {
     body.height[at(site)] = rounded(height);
 }
 
-void check_input(std::int32_t n, const double *masses, const double *place) {
+void check_input(std::int32_t n, const double *masses, const double *coordinates) {
     int massive = 0;
     for (std::int32_t a = 0; a < n; ++a) {
         massive += masses[a] > 0;
         for (int c = 0; c < 3; ++c)
-            if (!std::isfinite(place[3 * a + c])) throw BodyFault{BodyFault::not_finite, a};
+            if (!std::isfinite(coordinates[3 * a + c])) throw BodyFault{BodyFault::not_finite, a};
     }
     if (massive == 0) throw BodyFault{BodyFault::no_mass, -1};
     if (massive == 1) throw BodyFault{BodyFault::one_mass, -1};
@@ -151,21 +151,21 @@ void check_input(std::int32_t n, const double *masses, const double *place) {
 
 }  // namespace
 
-Body make_body(std::int32_t n, const double *masses, const double *place) {
-    check_input(n, masses, place);
+Body make_body(std::int32_t n, const double *masses, const double *coordinates) {
+    check_input(n, masses, coordinates);
     Body body;
     body.n_atoms = n;
     body.masses.assign(masses, masses + n);
-    body.place.assign(place, place + 3 * at(n));
+    body.coordinates.assign(coordinates, coordinates + 3 * at(n));
     body.n_massive = static_cast<std::int32_t>(std::count_if(masses, masses + n, [](double m) { return m > 0; }));
-    // Places from the first atom's, which is exact; then from the centre.
+    // Coordinates from the first atom's, which is exact; then from the centre.
     DoublePair mass = as_pair(0), centre[3], s[3][3];
     std::vector<DoublePair> x(3 * at(n));
     for (int c = 0; c < 3; ++c) centre[c] = as_pair(0);
     for (std::int32_t a = 0; a < n; ++a) {
         mass = mass + as_pair(masses[a]);
         for (int c = 0; c < 3; ++c) {
-            x[at(3 * a + c)] = as_pair(place[3 * a + c]) - as_pair(place[c]);
+            x[at(3 * a + c)] = as_pair(coordinates[3 * a + c]) - as_pair(coordinates[c]);
             centre[c] = centre[c] + masses[a] * x[at(3 * a + c)];
         }
     }
@@ -177,7 +177,7 @@ Body make_body(std::int32_t n, const double *masses, const double *place) {
             DoublePair &component = x[at(3 * a + c)];
             component = component - centre[c];
             square += component.hi * component.hi;
-            largest = std::max(largest, std::fabs(place[3 * a + c]));
+            largest = std::max(largest, std::fabs(coordinates[3 * a + c]));
         }
         extent = std::max(extent, std::sqrt(square));
     }
@@ -237,7 +237,7 @@ Body make_body(std::int32_t n, const double *masses, const double *place) {
 
 std::int64_t Body::bytes() const {
     return static_cast<std::int64_t>(
-        (masses.capacity() + place.capacity() + weights.capacity() + height.capacity()) * sizeof(double) +
+        (masses.capacity() + coordinates.capacity() + weights.capacity() + height.capacity()) * sizeof(double) +
         (y.capacity() + z.capacity() + first.capacity() + of_fixed.capacity() + share.capacity()) * sizeof(DoublePair) +
         (relations.c.capacity() + relations.of_fixed.capacity()) * sizeof(double) + sizeof *this);
 }
@@ -259,7 +259,7 @@ const char *fault_in_words(BodyFault::Cause cause) {
         case BodyFault::twice:
             return "has a linear relation that follows from the others";
         case BodyFault::undetermined:
-            return "has massless atoms whose places do not follow from those of atoms with mass";
+            return "has massless atoms whose coordinates do not follow from those of atoms with mass";
         case BodyFault::held:
             return "has linear relations with fixed atoms that leave nothing of it free";
         default:
@@ -282,7 +282,7 @@ std::vector<Step> nearest_steps(const Body &body, std::int32_t first) {
             if (done[at(a)]) continue;
             double square = 0;
             for (int c = 0; c < 3; ++c) {
-                const double d = body.place[at(3 * a + c)] - body.place[at(3 * last + c)];
+                const double d = body.coordinates[at(3 * a + c)] - body.coordinates[at(3 * last + c)];
                 square += d * d;
             }
             if (square < least[at(a)]) {

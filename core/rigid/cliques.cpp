@@ -15,7 +15,7 @@ namespace holonomic::rigid {
 
 namespace {
 
-class Search {
+class CliqueSearch {
 public:
     using Atom = std::int64_t;  // what PlanarRing asks for
     template <class Each>
@@ -47,8 +47,8 @@ public:
         return lengths_around_ = each_once(std::move(lengths_around_));
     }
 
-    Search(const Masses &masses, const BondList &list, const double *lengths, std::int64_t n_lengths, double tolerance,
-           const std::vector<unsigned char> &left_out)
+    CliqueSearch(const Masses &masses, const BondList &list, const double *lengths, std::int64_t n_lengths,
+                 double tolerance, const std::vector<unsigned char> &left_out)
         : list_(list), lengths_(lengths), n_lengths_(n_lengths), tolerance_(tolerance), left_out_(left_out) {
         for (std::int64_t k = 0; k < list.n_bonds; ++k) {
             const std::int64_t i = list.pairs[2 * k], j = list.pairs[2 * k + 1];
@@ -75,7 +75,7 @@ public:
         found_.bonds = bonds_from(held_atoms());
         for (const std::int64_t k : found_.bonds) look_for_shared(k);
         if (found_.linear.empty()) return std::move(found_);
-        take_sharing_bodies(found_.sizes, found_.atoms, found_.places, found_.linear);
+        take_sharing_bodies(found_.sizes, found_.atoms, found_.coordinates, found_.linear);
         found_.linear_bonds = bonds_from(linear_atoms());
         return std::move(found_);
     }
@@ -103,8 +103,8 @@ private:
                              "is one too many: the atoms that it and the bonds around it join have fewer freedoms than "
                              "bonds; hol_chains_add_rigid holds such a part by coordinates");
         std::sort(clique.begin(), clique.end());
-        const Group group = look_at(distances(clique), tolerance_, around(clique));
-        if (group.kind == Group::impossible) refuse(clique, group.misfit);
+        const FittedGroup group = look_at(distances(clique), tolerance_, around(clique));
+        if (group.kind == FittedGroup::impossible) refuse(clique, group.misfit);
         note(clique, group.misfit);
     }
 
@@ -140,15 +140,15 @@ private:
     void check_shared(std::int64_t bond, const std::vector<std::int64_t> &atoms) {
         if (is_together(atoms) || found_.linear.has_together(atoms) || !depend(atoms)) return;
         if (left_out_.empty()) return found_.shared.push_back(bond);
-        Group group = look_at(distances(atoms), tolerance_, around(atoms));
+        FittedGroup group = look_at(distances(atoms), tolerance_, around(atoms));
         std::vector<std::int64_t> all = atoms;
-        std::vector<double> places = group.places;
+        std::vector<double> coordinates = group.coordinates;
         group.misfit = join_all(
-            group.dimension, all, places, [&](Atom atom) { return std::count(all.begin(), all.end(), atom) == 0; },
+            group.dimension, all, coordinates, [&](Atom atom) { return std::count(all.begin(), all.end(), atom) == 0; },
             [](Atom) {});
         if (group.misfit.error > Decimals(distances(all), tolerance_, around(all)).most()) refuse(all, group.misfit);
         note(all, group.misfit);
-        found_.linear.add({std::move(all), std::move(places), group.dimension});
+        found_.linear.add({std::move(all), std::move(coordinates), group.dimension});
     }
 
     MoleculeLengths around(const std::vector<Atom> &atoms) const {
@@ -187,9 +187,9 @@ private:
 
     bool depend(const std::vector<std::int64_t> &atoms) const {
         const Distances wanted = distances(atoms);
-        const Group group = look_at(wanted, tolerance_, around(atoms));
-        if (group.kind == Group::impossible) refuse(atoms, group.misfit);
-        return group.kind == Group::dependent;
+        const FittedGroup group = look_at(wanted, tolerance_, around(atoms));
+        if (group.kind == FittedGroup::impossible) refuse(atoms, group.misfit);
+        return group.kind == FittedGroup::dependent;
     }
 
     void look_around(std::int64_t bond, bool five) {
@@ -224,45 +224,46 @@ private:
 
     void take(std::vector<std::int64_t> clique) {
         std::sort(clique.begin(), clique.end());
-        const Group group = look_at(distances(clique), tolerance_, around(clique));
-        if (group.kind == Group::impossible) refuse(clique, group.misfit);
-        take(clique, group.places, group.dimension);
+        const FittedGroup group = look_at(distances(clique), tolerance_, around(clique));
+        if (group.kind == FittedGroup::impossible) refuse(clique, group.misfit);
+        take(clique, group.coordinates, group.dimension);
     }
 
     void look_for_ring(std::int64_t bond, std::int64_t &steps) {
         const std::int64_t i = list_.pairs[2 * bond], j = list_.pairs[2 * bond + 1];
         if (i == j || is_left_out(bond) || !is_free(i) || !is_free(j)) return;
-        PlanarRing<Search> flat(*this, std::min(i, j), std::max(i, j), tolerance_, steps);
-        if (flat.find()) take(flat.ring(), flat.places(), 2);
+        PlanarRing<CliqueSearch> flat(*this, std::min(i, j), std::max(i, j), tolerance_, steps);
+        if (flat.find()) take(flat.ring(), flat.coordinates(), 2);
     }
 
-    void take(std::vector<std::int64_t> atoms, std::vector<double> places, int dimension) {
+    void take(std::vector<std::int64_t> atoms, std::vector<double> coordinates, int dimension) {
         const std::size_t body = found_.sizes.size();
         for (const std::int64_t atom : atoms) body_of_[atom] = body;
         const Misfit misfit = join_all(
-            dimension, atoms, places, [&](Atom atom) { return is_free(atom); },
+            dimension, atoms, coordinates, [&](Atom atom) { return is_free(atom); },
             [&](Atom atom) { body_of_[atom] = body; });
         const Distances wanted = distances(atoms);
         if (misfit.error > Decimals(wanted, tolerance_, around(atoms)).most()) refuse(atoms, misfit);
         note(atoms, misfit);
         found_.sizes.push_back(static_cast<std::int64_t>(atoms.size()));
         found_.atoms.insert(found_.atoms.end(), atoms.begin(), atoms.end());
-        found_.places.insert(found_.places.end(), places.begin(), places.end());
+        found_.coordinates.insert(found_.coordinates.end(), coordinates.begin(), coordinates.end());
     }
 
-    // All atoms that join a body; its places are those that fit best. Errors of places add up while atoms join: what
-    // does not fit then may fit the best ones.
+    // All atoms that join a body; its coordinates are those that fit best. Errors of coordinates add up while atoms
+    // join: what does not fit then may fit the best ones.
     template <class May, class Take>
-    Misfit join_all(int dimension, std::vector<std::int64_t> &atoms, std::vector<double> &places, const May &may,
+    Misfit join_all(int dimension, std::vector<std::int64_t> &atoms, std::vector<double> &coordinates, const May &may,
                     const Take &take) const {
         const Decimals decimals(distances(atoms), tolerance_, around(atoms));
-        Misfit misfit = misfit_of(distances(atoms), places);
+        Misfit misfit = misfit_of(distances(atoms), coordinates);
         for (std::size_t before = 0; before != atoms.size();) {
             before = atoms.size();
             for (std::size_t next = 0; next < atoms.size(); ++next)
                 for (const Partner &partner : bonds_of_.at(atoms[next]))
-                    if (may(partner.atom) && join(partner.atom, dimension, decimals, atoms, places)) take(partner.atom);
-            if (atoms.size() != before) misfit = fit_places(distances(atoms), dimension, places);
+                    if (may(partner.atom) && join(partner.atom, dimension, decimals, atoms, coordinates))
+                        take(partner.atom);
+            if (atoms.size() != before) misfit = fit_coordinates(distances(atoms), dimension, coordinates);
         }
         return misfit;
     }
@@ -275,14 +276,14 @@ private:
 
     // An atom joins a body that holds it by more distances than its place has coordinates, all of which it fits.
     bool join(std::int64_t atom, int dimension, const Decimals &of_body, std::vector<std::int64_t> &atoms,
-              std::vector<double> &places) const {
+              std::vector<double> &coordinates) const {
         std::vector<std::int64_t> near{atom};
         std::vector<double> there{0, 0, 0};
         for (std::size_t a = 0; a < atoms.size(); ++a) {
             if (bond_between(atom, atoms[a]) < 0) continue;
             near.push_back(atoms[a]);
-            there.insert(there.end(), places.begin() + static_cast<std::ptrdiff_t>(3 * a),
-                         places.begin() + static_cast<std::ptrdiff_t>(3 * a + 3));
+            there.insert(there.end(), coordinates.begin() + static_cast<std::ptrdiff_t>(3 * a),
+                         coordinates.begin() + static_cast<std::ptrdiff_t>(3 * a + 3));
         }
         if (static_cast<int>(near.size()) < dimension + 2) return false;
         Distances wanted(static_cast<std::int64_t>(near.size()));
@@ -295,7 +296,7 @@ private:
         };
         if (!allows(decimals) && !allows(of_body)) return false;
         atoms.push_back(atom);
-        places.insert(places.end(), there.begin(), there.begin() + 3);
+        coordinates.insert(coordinates.end(), there.begin(), there.begin() + 3);
         return true;
     }
 
@@ -305,7 +306,7 @@ private:
         char words[384];
         std::snprintf(words, sizeof words,
                       "has the length %.10g, which does not fit the others between its %zu atoms, a rigid body: in the "
-                      "places that fit best it is %.10g, off by %.2g of it, more than the tolerance of %.2g "
+                      "coordinates that fit best it is %.10g, off by %.2g of it, more than the tolerance of %.2g "
                       "(hol_chains_set_length_tolerance; hol_chains_add_rigid takes coordinates)",
                       lengths_[bond % n_lengths_], atoms.size(), misfit.distance, misfit.error, tolerance_);
         throw bond_error(list_, Status::degenerate, bond, words);
@@ -361,7 +362,7 @@ private:
 
 Cliques find_cliques(const Masses &masses, const BondList &list, const double *lengths, std::int64_t n_lengths,
                      double tolerance, const std::vector<unsigned char> &left_out) {
-    return Search(masses, list, lengths, n_lengths, tolerance, left_out).find();
+    return CliqueSearch(masses, list, lengths, n_lengths, tolerance, left_out).find();
 }
 
 }  // namespace holonomic::rigid

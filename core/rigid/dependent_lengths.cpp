@@ -85,7 +85,8 @@ bool depend(const Partners &partners, const std::int32_t (&atoms)[n], double tol
             if (i != j)
                 wanted.at(static_cast<std::int64_t>(i), static_cast<std::int64_t>(j)) =
                     std::sqrt(partners.square(atoms[i], atoms[j]));
-    return look_at(wanted, tolerance, [&] { return partners.lengths_around(atoms[0]); }).kind != Group::independent;
+    return look_at(wanted, tolerance, [&] { return partners.lengths_around(atoms[0]); }).kind !=
+           FittedGroup::independent;
 }
 
 // Three or four atoms, of which i is the lowest.

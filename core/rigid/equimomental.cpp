@@ -58,15 +58,15 @@ bool is_indefinite(const long double (&J)[3][3]) {
     return false;
 }
 
-struct Factor {
+struct CholeskyFactor {
     long double column[3][3];
     int rank;
 };
 
 // Cholesky's, with pivots in descending order; a rank less than 3 where what is left is 0 to rounding, or as far below
 // as a file's digits may be. rank -1: more is below.
-Factor factor_of(long double (&J)[3][3]) {
-    Factor factor{};
+CholeskyFactor factor_of(long double (&J)[3][3]) {
+    CholeskyFactor factor{};
     const long double trace = J[0][0] + J[1][1] + J[2][2];
     for (int k = 0; k < 3; ++k) {
         int p = 0;
@@ -120,7 +120,7 @@ MassPoints equimomental_points(double mass, const double *centre, const double *
     for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j)
             J[i][j] = (i == j ? half : 0) - (static_cast<long double>(inertia[3 * i + j]) + inertia[3 * j + i]) / 2;
-    const Factor factor = factor_of(J);
+    const CholeskyFactor factor = factor_of(J);
     if (factor.rank < 0) {
         double moment[3];
         moments_of(inertia, moment);
@@ -139,7 +139,7 @@ MassPoints equimomental_points(double mass, const double *centre, const double *
         for (int i = 0; i < 3; ++i) {
             long double x = 0;
             for (int k = 0; k < factor.rank; ++k) x += factor.column[k][i] * s[k];
-            found.place[a][i] =
+            found.coordinates[a][i] =
                 static_cast<double>((centre ? centre[i] : 0) + x / std::sqrt(static_cast<long double>(mass)));
         }
     }

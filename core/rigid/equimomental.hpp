@@ -7,7 +7,7 @@ namespace holonomic::rigid {
 struct MassPoints {
     int n;        // 2: on a line, 3: in a plane, 4
     double mass;  // of each
-    double place[4][3];
+    double coordinates[4][3];
 };
 
 // inertia [3][3], about the centre. Throws Error where no distribution of mass has it.

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "core/rigid/shape.hpp"
+#include "core/rigid/molecule_kind.hpp"
 
 namespace holonomic::rigid {
 
@@ -19,7 +19,7 @@ struct Factor {
     double *before;  // what stood on the diagonal
 
     // The first row whose pivot is not above `least` times what stood there; -1: all are. On entry the matrix.
-    std::int32_t eliminate(const Shape &s, double least) const {
+    std::int32_t eliminate(const MoleculeKind &s, double least) const {
         const std::int32_t *const start = s.column_start.data(), *const row = s.row.data();
         for (std::int32_t k = 0; k < s.n_rows; ++k) before[k] = first_word(diagonal[k]);
         for (std::int32_t k = 0; k < s.n_rows; ++k) {
@@ -30,18 +30,18 @@ struct Factor {
             for (std::int32_t a = begin; a < end; ++a) {
                 const std::int32_t i = row[a];
                 diagonal[i] = diagonal[i] - l[a] * u[a];
-                std::int32_t place = start[i];
+                std::int32_t entry = start[i];
                 for (std::int32_t b = a + 1; b < end; ++b) {
-                    while (row[place] < row[b]) ++place;
-                    l[place] = l[place] - l[b] * u[a];
-                    u[place] = u[place] - l[a] * u[b];
+                    while (row[entry] < row[b]) ++entry;
+                    l[entry] = l[entry] - l[b] * u[a];
+                    u[entry] = u[entry] - l[a] * u[b];
                 }
             }
         }
         return -1;
     }
 
-    void solve(const Shape &s, T *x) const {
+    void solve(const MoleculeKind &s, T *x) const {
         const std::int32_t *const start = s.column_start.data(), *const row = s.row.data();
         for (std::int32_t k = 0; k < s.n_rows; ++k)
             for (std::int32_t a = start[k]; a < start[k + 1]; ++a) x[row[a]] = x[row[a]] - l[a] * x[k];

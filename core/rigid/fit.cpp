@@ -123,8 +123,8 @@ struct Grid {
         const double scale = std::pow(10.0, decimals);
         const double x = of_squares ? length * scale * (length * scale) : length * scale;
         // Coordinates far from the origin are off by more than these squares are.
-        const double of_places = of_squares ? std::min(1e-12 * scale * scale, 0.03) : 0;
-        const double margin = std::max((is_float(length) ? of_float : 4 * epsilon) * x, of_places);
+        const double of_coordinates = of_squares ? std::min(1e-12 * scale * scale, 0.03) : 0;
+        const double margin = std::max((is_float(length) ? of_float : 4 * epsilon) * x, of_coordinates);
         chance *= std::min(1.0, 2 * margin);
         return x >= 0.5 && std::fabs(x - std::round(x)) <= margin;
     }
@@ -183,27 +183,28 @@ Roundings roundings_of(const std::vector<double> &values) {
     return found;
 }
 
-// Whether places on a grid of so many decimals would be on a line or in a plane: what is off it then is no rounding.
+// Whether coordinates on a grid of so many decimals would be on a line or in a plane: what is off it then is no
+// rounding.
 bool are_flat_on_grid(const Distances &wanted, int decimals) {
     const double scale = std::pow(10.0, 2 * decimals);
-    std::vector<double> squares(wanted.length), places;
+    std::vector<double> squares(wanted.length), coordinates;
     for (std::int64_t i = 0; i < wanted.n; ++i)
         for (std::int64_t j = 0; j < i; ++j)
             if (!(wanted.at(i, j) > 0)) return false;  // not all are held
     for (double &x : squares) x = std::round(x * x * scale) / scale;
-    return places_in(static_cast<int>(wanted.n) - 2, wanted.n, squares.data(), places) <= of_heights(wanted);
+    return coordinates_in(static_cast<int>(wanted.n) - 2, wanted.n, squares.data(), coordinates) <= of_heights(wanted);
 }
 
 }  // namespace
 
-Misfit misfit_of(const Distances &wanted, const std::vector<double> &places) {
+Misfit misfit_of(const Distances &wanted, const std::vector<double> &coordinates) {
     Misfit worst{0, 0, 0, 0};
     for (std::int64_t i = 0; i < wanted.n; ++i)
         for (std::int64_t j = 0; j < i; ++j) {
             const double length = wanted.at(i, j);
             if (!(length > 0)) continue;
             double square = 0;
-            for (int c = 0; c < 3; ++c) square += std::pow(places[at(3 * i + c)] - places[at(3 * j + c)], 2);
+            for (int c = 0; c < 3; ++c) square += std::pow(coordinates[at(3 * i + c)] - coordinates[at(3 * j + c)], 2);
             const double distance = std::sqrt(square), error = std::fabs(distance - length) / length;
             if (!(error <= worst.error)) worst = {error, i, j, distance};
         }
@@ -211,13 +212,13 @@ Misfit misfit_of(const Distances &wanted, const std::vector<double> &places) {
 }
 
 // Differences of squares, |x - p|^2 - |x - p_0|^2, are linear in x: the least sum of squares of these.
-bool locate(const Distances &wanted, int dimension, std::vector<double> &places) {
+bool locate(const Distances &wanted, int dimension, std::vector<double> &coordinates) {
     double A[3][4] = {}, largest = 0;
-    const double *const first = places.data() + 3;
+    const double *const first = coordinates.data() + 3;
     for (std::int64_t i = 2; i < wanted.n; ++i) {
         double row[4] = {0, 0, 0, (std::pow(wanted.at(1, 0), 2) - std::pow(wanted.at(i, 0), 2)) / 2};
         for (int c = 0; c < dimension; ++c) {
-            row[c] = places[at(3 * i + c)] - first[c];
+            row[c] = coordinates[at(3 * i + c)] - first[c];
             row[3] += row[c] * row[c] / 2;
         }
         for (int b = 0; b < dimension; ++b)
@@ -231,19 +232,19 @@ bool locate(const Distances &wanted, int dimension, std::vector<double> &places)
     }
     for (int b = dimension - 1; b >= 0; --b) {
         double x = A[b][3];
-        for (int c = b + 1; c < dimension; ++c) x -= A[b][c] * (places[at(c)] - first[c]);
-        places[at(b)] = first[b] + x / A[b][b];
+        for (int c = b + 1; c < dimension; ++c) x -= A[b][c] * (coordinates[at(c)] - first[c]);
+        coordinates[at(b)] = first[b] + x / A[b][b];
     }
     return true;
 }
 
-Misfit fit_places(const Distances &wanted, int dimension, std::vector<double> &places) {
-    for (std::size_t e = 0; e < places.size(); ++e)
-        if (static_cast<int>(e % 3) >= dimension) places[e] = 0;
-    const Misfit misfit = misfit_of(wanted, places);
+Misfit fit_coordinates(const Distances &wanted, int dimension, std::vector<double> &coordinates) {
+    for (std::size_t e = 0; e < coordinates.size(); ++e)
+        if (static_cast<int>(e % 3) >= dimension) coordinates[e] = 0;
+    const Misfit misfit = misfit_of(wanted, coordinates);
     if (misfit.error <= rounding) return misfit;
-    Fit(wanted, dimension, places).run();
-    return misfit_of(wanted, places);
+    Fit(wanted, dimension, coordinates).run();
+    return misfit_of(wanted, coordinates);
 }
 
 std::vector<double> each_once(std::vector<double> lengths) {
@@ -262,44 +263,44 @@ Decimals::Decimals(const Distances &wanted, double tolerance, const MoleculeLeng
     const int of_lengths = decimals_of(values, 12, false, 3e-4, all);
     const Roundings singles = roundings_of(values);
     // Coordinates leave few distances with decimals of their own: those along an axis.
-    const bool may_be_places = of_lengths < 0 && 2 * singles.count < static_cast<std::ptrdiff_t>(values.size());
-    int of_places = may_be_places ? decimals_of(values, 6, true, 3e-4, all) : -1;
-    if (of_places >= 0 && wanted.n < 5 && are_flat_on_grid(wanted, of_places)) of_places = -1;
+    const bool may_be_coordinates = of_lengths < 0 && 2 * singles.count < static_cast<std::ptrdiff_t>(values.size());
+    int of_coordinates = may_be_coordinates ? decimals_of(values, 6, true, 3e-4, all) : -1;
+    if (of_coordinates >= 0 && wanted.n < 5 && are_flat_on_grid(wanted, of_coordinates)) of_coordinates = -1;
     // Two rounded bonds say nothing of a third distance that is given in full: the angle may be nearly 180 degrees.
     const auto n_values = static_cast<std::ptrdiff_t>(values.size());
     const bool most_are = wanted.n == 3 ? singles.count == n_values : 2 * singles.count > n_values;
-    const double of_single = of_places < 0 && most_are ? singles.coarsest : 0;
+    const double of_single = of_coordinates < 0 && most_are ? singles.coarsest : 0;
     if (of_lengths >= 0) open_ = std::max(open_, std::pow(10.0, -std::max(of_lengths, few_decimals)) / least);
-    if (of_places >= 0)
-        open_ = std::max(open_, 2 * std::pow(10.0, -2 * std::max(of_places, few_decimals)) / (least * least));
+    if (of_coordinates >= 0)
+        open_ = std::max(open_, 2 * std::pow(10.0, -2 * std::max(of_coordinates, few_decimals)) / (least * least));
     open_ = std::max(open_, of_single / least);
-    are_full_ = of_lengths < 0 && of_places < 0 && of_single == 0;
+    are_full_ = of_lengths < 0 && of_coordinates < 0 && of_single == 0;
     if (are_full_ && wanted.n < 5) highest_ = of_heights(wanted);
     const double with_zeros = most_are ? std::max(open_, singles.with_zeros / least) : open_;
     if (tolerance > 0) most_ = std::max(tolerance, std::min(with_zeros, 10 * tolerance));
 }
 
-Group look_at(const Distances &wanted, double tolerance, const MoleculeLengths &all) {
+FittedGroup look_at(const Distances &wanted, double tolerance, const MoleculeLengths &all) {
     // A group whose square of a height is above this part of the largest square is far from flat, for any tolerance.
     constexpr double high = 0.05;
     const std::int64_t n = wanted.n;
     const int most = static_cast<int>(std::min<std::int64_t>(3, n - 2));
     std::vector<double> squares(wanted.length);
     for (double &x : squares) x *= x;
-    Group group{Group::independent, most, {}, {}};
+    FittedGroup group{FittedGroup::independent, most, {}, {}};
     for (int d = 1; d <= most; ++d) {
-        const double left = places_in(d, n, squares.data(), group.places);
+        const double left = coordinates_in(d, n, squares.data(), group.coordinates);
         const bool impossible = d == 3 || (d == most && left < 0);  // they fit no place in space
         if (!impossible && left > high) continue;
         const Decimals decimals(wanted, tolerance, all);
         group.dimension = d;
-        group.misfit = fit_places(wanted, d, group.places);
+        group.misfit = fit_coordinates(wanted, d, group.coordinates);
         const bool must = impossible && !decimals.allow_position(group.misfit);
         group.kind = decimals.allow(left, group.misfit) || (must && group.misfit.error <= decimals.most())
-                         ? Group::dependent
-                     : must && n > 3 ? Group::impossible
-                                     : Group::independent;
-        if (group.kind != Group::independent) return group;
+                         ? FittedGroup::dependent
+                     : must && n > 3 ? FittedGroup::impossible
+                                     : FittedGroup::independent;
+        if (group.kind != FittedGroup::independent) return group;
     }
     return group;
 }

@@ -6,13 +6,14 @@
 #include "core/rigid/run.hpp"
 #include "core/rigid/verbs.hpp"
 #include "core/rigid/within.hpp"
+#include "core/run/execute.hpp"
 #include "core/run/kernel_choice.hpp"
 
 namespace holonomic::rigid {
 
 namespace {
 
-struct Outputs {
+struct ForceOutputs {
     double *lambda, *tension;
     AtomArray g;
     bool add;
@@ -20,7 +21,7 @@ struct Outputs {
 
 bool is_finite(const PairVector &a) { return std::isfinite(a.x.hi) && std::isfinite(a.y.hi) && std::isfinite(a.z.hi); }
 
-void write_force(const Outputs &out, std::int64_t atom, const PairVector &force, bool add) {
+void write_force(const ForceOutputs &out, std::int64_t atom, const PairVector &force, bool add) {
     double x[3] = {rounded(force.x), rounded(force.y), rounded(force.z)};
     if (add) {
         double before[3];
@@ -31,14 +32,14 @@ void write_force(const Outputs &out, std::int64_t atom, const PairVector &force,
 }
 
 // z: accelerations of the nodes.
-void write(const System &system, const Place &place, const PairVector *z, const AtomArray &f, const Outputs &out,
-           bool virial, Tally &tally) {
-    const Shape &s = system.shape();
+void write(const System &system, const MoleculeView &view, const PairVector *z, const AtomArray &f,
+           const ForceOutputs &out, bool virial, Tally &tally) {
+    const MoleculeKind &s = system.kind();
     if (s.by_lengths && (out.lambda || out.tension)) {
         double *force = force_within(system);
         for (std::int32_t i = 0; i < s.n_held; ++i) {
             double x[3] = {0, 0, 0};
-            if (f.x) read_atom(f, place.atoms[i], x);
+            if (f.x) read_atom(f, view.atoms[i], x);
             const PairVector applied = {as_pair(x[0]), as_pair(x[1]), as_pair(x[2])};
             const Vector3<double> whole = rounded(s.mass[at(i)] * system.at_atom(z, i) - applied);
             *force++ = whole.x, *force++ = whole.y, *force++ = whole.z;
@@ -47,45 +48,45 @@ void write(const System &system, const Place &place, const PairVector *z, const 
     }
     for (std::size_t k = 0; k < s.bonds.size(); ++k) {
         const double t = multiplier_of(system, k);
-        if (out.lambda) out.lambda[place.bonds[k]] = t / 2;
+        if (out.lambda) out.lambda[view.bonds[k]] = t / 2;
         if (!out.tension) continue;
         const Vector3<double> d = vector_of(system, system.now, k);
-        out.tension[place.bonds[k]] = t * std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
+        out.tension[view.bonds[k]] = t * std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
     }
     if (virial) system.add_virial(system.now, system.t, 1, tally.virial);
-    if (virial && f.x) system.add_virial_of_sites(system.now, f, place, tally.virial);
+    if (virial && f.x) system.add_virial_of_sites(system.now, f, view, tally.virial);
     if (!out.g.x) return;
     for (std::int32_t i = 0; i < s.n_held; ++i) {
         double x[3] = {0, 0, 0};
-        if (f.x) read_atom(f, place.atoms[i], x);
+        if (f.x) read_atom(f, view.atoms[i], x);
         const PairVector applied = {as_pair(x[0]), as_pair(x[1]), as_pair(x[2])};
-        write_force(out, place.atoms[i], s.mass[at(i)] * system.at_atom(z, i) - applied, out.add);
+        write_force(out, view.atoms[i], s.mass[at(i)] * system.at_atom(z, i) - applied, out.add);
     }
     if (s.n_held == s.n_atoms) return;
     system.pulls(system.now, system.t, system.b);
-    if (f.x) system.pass_to_fixed(f, place, system.b);
+    if (f.x) system.pass_to_fixed(f, view, system.b);
     for (std::int32_t i = s.n_held; i < s.n_atoms; ++i)
-        write_force(out, place.atoms[i], system.b[s.node_of[at(i)]], out.add || i >= s.n_movable);
+        write_force(out, view.atoms[i], system.b[s.node_of[at(i)]], out.add || i >= s.n_movable);
 }
 
 bool all_finite(const System &system, const PairVector *z) {
-    const Shape &s = system.shape();
+    const MoleculeKind &s = system.kind();
     bool finite = true;
     for (std::int32_t n = 0; n < s.n_nodes; ++n) finite = finite && is_finite(z[n]) && is_finite(system.now.q[n]);
     for (std::int32_t i = 0; i < s.n_atoms; ++i) finite = finite && is_finite(system.now.x[i]);
     return finite;
 }
 
-struct ForcesWork final : Work {
+struct BodyForces final : BodyWork {
     AtomArray r, v, f;
     const Cell &box;
     const BoxRate *rate;
-    Outputs out;
+    ForceOutputs out;
     bool virial, in_order;
     ForcesCall call;
 
-    ForcesWork(const Chains &chains, const AtomArray &r_, const AtomArray &v_, const AtomArray &f_, const Outputs &out_,
-               bool virial_)
+    BodyForces(const Chains &chains, const AtomArray &r_, const AtomArray &v_, const AtomArray &f_,
+               const ForceOutputs &out_, bool virial_)
         : r(r_), v(v_), f(f_), box(chains.box), rate(chains.box_rate()), out(out_), virial(virial_),
           in_order(out_.g.x && !chains.bodies()->fixed_atoms().empty()), call{r_,       v_,      f_,
                                                                               out_.g,   nullptr, nullptr,
@@ -102,12 +103,12 @@ struct ForcesWork final : Work {
         for (int i = 0; i < 6; ++i) tally.virial[i] += result.virial[i];
     }
 
-    Outcome molecule(const System &system, const Place &place, Tally &tally) const override {
-        const Shape &s = system.shape();
-        system.read(r, box, place, system.now);
+    Outcome molecule(const System &system, const MoleculeView &view, Tally &tally) const override {
+        const MoleculeKind &s = system.kind();
+        system.read(r, box, view, system.now);
         system.differentiate(system.now);
         const bool moves = v.x || rate;
-        if (v.x) system.velocities(v, place, system.b);
+        if (v.x) system.velocities(v, view, system.b);
         if (moves)
             for_rates(system, v.x ? system.b : nullptr, rate,
                       [&](std::int32_t row, std::int32_t, bool square, const PairVector &, const PairVector &,
@@ -116,57 +117,52 @@ struct ForcesWork final : Work {
                           system.c[row] = square ? product : 2.0 * product;
                       });
         PairVector *const z = system.a;
-        if (f.x) system.forces(system.now, f, place, z);
+        if (f.x) system.forces(system.now, f, view, z);
         for (std::int32_t n = 0; n < s.n_nodes; ++n)
             z[n] = f.x ? s.w[at(n)] * z[n] : PairVector{as_pair(0), as_pair(0), as_pair(0)};
         const Outcome outcome = system.project(system.now, moves ? system.c : nullptr, z, system.t);
         if (outcome != Outcome::good) return outcome;
         if (!all_finite(system, z)) return Outcome::not_finite;
-        write(system, place, z, f, out, virial, tally);
+        write(system, view, z, f, out, virial, tally);
         return outcome;
     }
 };
 
-struct SolveWork final : Work {
+struct BodySolve final : BodyWork {
     AtomArray r;
     const Cell &box;
     const double *rhs;
-    Outputs out;
+    ForceOutputs out;
     bool virial, in_order;
 
-    SolveWork(const Chains &chains, const AtomArray &r_, const double *rhs_, const Outputs &out_, bool virial_)
+    BodySolve(const Chains &chains, const AtomArray &r_, const double *rhs_, const ForceOutputs &out_, bool virial_)
         : r(r_), box(chains.box), rhs(rhs_), out(out_), virial(virial_),
           in_order(out_.g.x && !chains.bodies()->fixed_atoms().empty()) {}
     bool is_in_order() const override { return in_order; }
 
-    Outcome molecule(const System &system, const Place &place, Tally &tally) const override {
-        const Shape &s = system.shape();
-        system.read(r, box, place, system.now);
+    Outcome molecule(const System &system, const MoleculeView &view, Tally &tally) const override {
+        const MoleculeKind &s = system.kind();
+        system.read(r, box, view, system.now);
         system.differentiate(system.now);
         for (std::int32_t k = 0; k < s.n_rows; ++k) {
             const std::int32_t bond = s.bond_of_row[at(k)];
-            system.c[k] = as_pair(bond < 0 ? 0 : rhs[place.bonds[bond]] / 2);
+            system.c[k] = as_pair(bond < 0 ? 0 : rhs[view.bonds[bond]] / 2);
         }
         PairVector *const z = system.a;
         for (std::int32_t n = 0; n < s.n_nodes; ++n) z[n] = {as_pair(0), as_pair(0), as_pair(0)};
         const Outcome outcome = system.project(system.now, system.c, z, system.t);
         if (outcome != Outcome::good) return outcome;
         if (!all_finite(system, z)) return Outcome::not_finite;
-        write(system, place, z, AtomArray{}, out, virial, tally);
+        write(system, view, z, AtomArray{}, out, virial, tally);
         return outcome;
     }
 };
-
-void add_virial(const Tally &tally, double *virial) {
-    const int place[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
-    for (int i = 0; i < 9; ++i) virial[i] += tally.virial[place[i]];
-}
 
 }  // namespace
 
 void forces(const Chains &chains, const AtomArray &r, const AtomArray &v, const AtomArray &f, double *lambda,
             double *tension, const AtomArray &g, bool add, double *virial) {
-    const Found found = run(chains, ForcesWork(chains, r, v, f, {lambda, tension, g, add}, virial != nullptr));
+    const RunResult found = run(chains, BodyForces(chains, r, v, f, {lambda, tension, g, add}, virial != nullptr));
     if (found.tally.n_bad > 0) {
         const Named arrays[] = {{"position", &r}, {"velocity", &v}, {"force", &f}};
         throw error_of(chains, found, arrays, 3);
@@ -176,7 +172,7 @@ void forces(const Chains &chains, const AtomArray &r, const AtomArray &v, const 
 
 void solve(const Chains &chains, const AtomArray &r, const double *rhs, double *lambda, const AtomArray &g, bool add,
            double *virial) {
-    const Found found = run(chains, SolveWork(chains, r, rhs, {lambda, nullptr, g, add}, virial != nullptr));
+    const RunResult found = run(chains, BodySolve(chains, r, rhs, {lambda, nullptr, g, add}, virial != nullptr));
     if (found.tally.n_bad > 0) {
         const Named arrays[] = {{"position", &r}};
         throw error_of_values(chains, found.tally.first_bad - chains.n_chains(), rhs, "right-hand side",

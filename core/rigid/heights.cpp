@@ -31,7 +31,7 @@ public:
         const auto less = [](long double a, long double b) { return std::fabs(a) < std::fabs(b); };
         return static_cast<double>(*std::max_element(height_.begin(), height_.end(), less)) / largest_;
     }
-    const std::vector<long double> &places() const { return x_; }
+    const std::vector<long double> &coordinates() const { return x_; }
 
 private:
     const std::int64_t n_;
@@ -43,11 +43,11 @@ private:
 
 }  // namespace
 
-double places_in(int dimension, std::int64_t n, const double *squares, std::vector<double> &places) {
+double coordinates_in(int dimension, std::int64_t n, const double *squares, std::vector<double> &coordinates) {
     Heights heights(n, squares);
     for (int d = 0; d < dimension; ++d) heights.go_on();
-    places.resize(3 * at(n));
-    for (std::size_t i = 0; i < places.size(); ++i) places[i] = static_cast<double>(heights.places()[i]);
+    coordinates.resize(3 * at(n));
+    for (std::size_t i = 0; i < coordinates.size(); ++i) coordinates[i] = static_cast<double>(heights.coordinates()[i]);
     return heights.left();
 }
 

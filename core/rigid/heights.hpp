@@ -1,4 +1,4 @@
-// Places by squared distances: Cholesky's factors of the inner products from atom 0, the largest remaining height
+// Coordinates by squared distances: Cholesky's factors of the inner products from atom 0, the largest remaining height
 // first.
 #pragma once
 
@@ -7,8 +7,8 @@
 
 namespace holonomic::rigid {
 
-// Places [n][3] in so many dimensions by squared distances [n][n]. Returns the square of the largest height that is
-// left, relative to the largest square: below 0 where distances fit no place in space.
-double places_in(int dimension, std::int64_t n, const double *squares, std::vector<double> &places);
+// Coordinates [n][3] in so many dimensions by squared distances [n][n]. Returns the square of the largest height that
+// is left, relative to the largest square: below 0 where distances fit no place in space.
+double coordinates_in(int dimension, std::int64_t n, const double *squares, std::vector<double> &coordinates);
 
 }  // namespace holonomic::rigid

@@ -37,8 +37,8 @@ rigid::Given given_of(const FoundMolecules &found, const FoundMolecule &molecule
     std::unordered_map<std::int64_t, std::int32_t> local;
     for (const bool fixed : {false, true}) {
         for (std::int32_t a = 0; a < molecule.n_atoms; ++a) {
-            const std::int64_t place = molecule.first_atom + a, atom = found.atoms[at(place)];
-            if ((found.fixed[at(place)] != 0) != fixed) continue;
+            const std::int64_t index = molecule.first_atom + a, atom = found.atoms[at(index)];
+            if ((found.fixed[at(index)] != 0) != fixed) continue;
             if (!local.emplace(atom, static_cast<std::int32_t>(given.atoms.size())).second) continue;
             given.atoms.push_back(atom);
             given.masses.push_back(masses.mass(atom));
@@ -97,8 +97,8 @@ namespace {
 template <class Each>
 void for_told(const rigid::Bodies *bodies, const Each &each) {
     for (std::int64_t m = 0; bodies && m < bodies->n_molecules(); ++m) {
-        const rigid::Shape &shape = bodies->shape(m);
-        for (std::size_t k = 0; shape.has_images && k < shape.bonds.size(); ++k) each(bodies->bonds(m)[k]);
+        const rigid::MoleculeKind &kind = bodies->kind(m);
+        for (std::size_t k = 0; kind.has_images && k < kind.bonds.size(); ++k) each(bodies->bonds(m)[k]);
     }
 }
 

@@ -13,10 +13,10 @@ namespace holonomic::rigid {
 
 namespace {
 
-class Search {
+class ImpliedSearch {
 public:
-    Search(const Masses &masses, const BondList &list, const double *lengths, std::int64_t n_lengths,
-           const Cliques &cliques)
+    ImpliedSearch(const Masses &masses, const BondList &list, const double *lengths, std::int64_t n_lengths,
+                  const Cliques &cliques)
         : masses_(masses), list_(list), lengths_(lengths), n_lengths_(n_lengths), implied_(at(list.n_bonds), 0) {
         std::size_t next = 0;
         for (std::size_t b = 0; b < cliques.sizes.size(); ++b)
@@ -111,10 +111,10 @@ private:
 
 std::vector<unsigned char> implied_bonds(const Masses &masses, const BondList &list, const double *lengths,
                                          std::int64_t n_lengths, const Cliques &cliques) {
-    return Search(masses, list, lengths, n_lengths, cliques).find();
+    return ImpliedSearch(masses, list, lengths, n_lengths, cliques).find();
 }
 
-std::vector<std::int64_t> implied_beside(const Linear &linear, const Masses &masses, const BondList &list,
+std::vector<std::int64_t> implied_beside(const LinearParts &linear, const Masses &masses, const BondList &list,
                                          const double *lengths, std::int64_t n_lengths, const Cliques &cliques) {
     std::unordered_map<std::int64_t, std::int64_t> body_of;
     std::size_t next = 0;

@@ -18,7 +18,7 @@ std::vector<unsigned char> implied_bonds(const Masses &masses, const BondList &l
 
 // The same in molecules with linear groups, of those that are in the equations so far. Throws Error where one is
 // implied by more than the lengths of its group, which have been compared.
-std::vector<std::int64_t> implied_beside(const Linear &linear, const Masses &masses, const BondList &list,
+std::vector<std::int64_t> implied_beside(const LinearParts &linear, const Masses &masses, const BondList &list,
                                          const double *lengths, std::int64_t n_lengths, const Cliques &cliques);
 
 }  // namespace holonomic::rigid

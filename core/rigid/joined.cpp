@@ -15,7 +15,8 @@ namespace {
 
 double distance(const LinearGroup &group, std::size_t i, std::size_t j) {
     double square = 0;
-    for (std::size_t x = 0; x < 3; ++x) square += std::pow(group.places[3 * i + x] - group.places[3 * j + x], 2);
+    for (std::size_t x = 0; x < 3; ++x)
+        square += std::pow(group.coordinates[3 * i + x] - group.coordinates[3 * j + x], 2);
     return std::sqrt(square);
 }
 
@@ -23,21 +24,21 @@ double distance(const LinearGroup &group, std::size_t i, std::size_t j) {
 int dimension_of(const LinearGroup &group) {
     constexpr double thin = 1e-16;
     const std::int64_t n = static_cast<std::int64_t>(group.atoms.size());
-    std::vector<double> squares(at(n * n)), places;
+    std::vector<double> squares(at(n * n)), coordinates;
     for (std::size_t i = 0; i < at(n); ++i)
         for (std::size_t j = 0; j < at(n); ++j) squares[i * at(n) + j] = std::pow(distance(group, i, j), 2);
     for (int d = 0; d < 3; ++d)
-        if (std::fabs(places_in(d, n, squares.data(), places)) <= thin) return d;
+        if (std::fabs(coordinates_in(d, n, squares.data(), coordinates)) <= thin) return d;
     return 3;
 }
 
 class Joining {
 public:
-    Joining(std::int64_t n_bodies, const std::int64_t *sizes, const std::int64_t *atoms, const double *places) {
+    Joining(std::int64_t n_bodies, const std::int64_t *sizes, const std::int64_t *atoms, const double *coordinates) {
         for (std::int64_t b = 0; b < n_bodies; ++b) {
-            groups_.push_back({{atoms, atoms + sizes[b]}, {places, places + 3 * sizes[b]}, 0});
+            groups_.push_back({{atoms, atoms + sizes[b]}, {coordinates, coordinates + 3 * sizes[b]}, 0});
             atoms += sizes[b];
-            places += 3 * sizes[b];
+            coordinates += 3 * sizes[b];
             for (const std::int64_t atom : groups_.back().atoms) bodies_of_[atom].push_back(at(b));
         }
     }
@@ -52,20 +53,20 @@ public:
                 continue;
             }
             append(group.atoms);
-            out_.places.insert(out_.places.end(), group.places.begin(), group.places.end());
-            out_.parts.loose.emplace_back();
+            out_.coordinates.insert(out_.coordinates.end(), group.coordinates.begin(), group.coordinates.end());
+            out_.parts.affine.emplace_back();
         }
-        const Linear linear = Linear::of_groups(joined);
+        const LinearParts linear = LinearParts::of_groups(joined);
         for (std::size_t p = 0; p < linear.parts().size(); ++p) {
             append(linear.parts()[p]);
-            out_.places.resize(3 * out_.atoms.size(), 0);
-            out_.parts.loose.push_back({linear.relations()[p], extent_of(linear.parts()[p]), {}});
+            out_.coordinates.resize(3 * out_.atoms.size(), 0);
+            out_.parts.affine.push_back({linear.relations()[p], extent_of(linear.parts()[p]), {}});
         }
         hold(joined, linear);
         return std::move(out_);
     }
 
-    // A bond within a body that is a loose part now.
+    // A bond within a body that is an affine part now.
     bool holds(std::int64_t i, std::int64_t j, double *length) const {
         const auto found = bodies_of_.find(i);
         if (found == bodies_of_.end()) return false;
@@ -116,22 +117,22 @@ private:
     }
 
     // Distances of the bases that are independent, and the way from atom to neighbouring atom.
-    void hold(const std::vector<LinearGroup> &joined, const Linear &linear) {
+    void hold(const std::vector<LinearGroup> &joined, const LinearParts &linear) {
         RankOfLinear rank(linear);
-        std::vector<std::tuple<int, std::size_t, LooseParts::Distance>> all;
+        std::vector<std::tuple<int, std::size_t, AffineParts::Distance>> all;
         for (const LinearGroup &group : joined) {
             const std::vector<std::int64_t> base = relations_of(group).base;
-            const auto place = [&](std::int64_t atom) {
+            const auto index = [&](std::int64_t atom) {
                 return at(std::find(group.atoms.begin(), group.atoms.end(), atom) - group.atoms.begin());
             };
             for (std::size_t a = 0; a < base.size(); ++a)
                 for (std::size_t b = 0; b < a; ++b)
                     all.emplace_back(
                         rank.followers(base[a], base[b]), all.size(),
-                        LooseParts::Distance{base[b], base[a], distance(group, place(base[a]), place(base[b]))});
+                        AffineParts::Distance{base[b], base[a], distance(group, index(base[a]), index(base[b]))});
             Body body;
             body.n_atoms = static_cast<std::int32_t>(group.atoms.size());
-            body.place = group.places;
+            body.coordinates = group.coordinates;
             for (const Step &step : nearest_steps(body, 0))
                 out_.parts.links.emplace_back(group.atoms[at(step.atom)], group.atoms[at(step.before)]);
         }
@@ -139,7 +140,7 @@ private:
             return std::tie(std::get<0>(a), std::get<1>(a)) < std::tie(std::get<0>(b), std::get<1>(b));
         });
         for (const auto &entry : all) {
-            const LooseParts::Distance &its = std::get<2>(entry);
+            const AffineParts::Distance &its = std::get<2>(entry);
             if (!rank.add(its.i, its.j, [](std::int64_t) { return false; })) out_.parts.hidden.push_back(its);
         }
     }
@@ -166,8 +167,9 @@ bool share_atoms(std::int64_t n_bodies, const std::int64_t *sizes, const std::in
 }
 
 JoinedBodies join_bodies(std::int64_t n_bodies, const std::int64_t *sizes, const std::int64_t *atoms,
-                         const double *places, std::int64_t n_bonds, const std::int64_t *pairs, const double *lengths) {
-    Joining joining(n_bodies, sizes, atoms, places);
+                         const double *coordinates, std::int64_t n_bonds, const std::int64_t *pairs,
+                         const double *lengths) {
+    Joining joining(n_bodies, sizes, atoms, coordinates);
     std::vector<std::int64_t> held;
     for (std::int64_t k = 0; k < n_bonds; ++k) {
         double length;

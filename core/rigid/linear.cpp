@@ -9,10 +9,11 @@ namespace holonomic::rigid {
 
 namespace {
 
-// Places as seen from the base: axes one after the other, each through the atom that is farthest from those before.
-class Frame {
+// Coordinates as seen from the base: axes one after the other, each through the atom that is farthest from those
+// before.
+class BaseFrame {
 public:
-    explicit Frame(const LinearGroup &group) : n_(group.atoms.size()), left_(group.places) {
+    explicit BaseFrame(const LinearGroup &group) : n_(group.atoms.size()), left_(group.coordinates) {
         base_.push_back(0);
         double farthest = -1;  // from the first atom, then the other way: an end
         for (std::size_t i = 0; i < n_ && group.dimension > 0; ++i)
@@ -72,7 +73,7 @@ private:
 }  // namespace
 
 GroupRelations relations_of(const LinearGroup &group) {
-    const Frame frame(group);
+    const BaseFrame frame(group);
     GroupRelations found;
     for (const std::size_t b : frame.base()) found.base.push_back(group.atoms[b]);
     found.relations.push_back({group.atoms, {}});
@@ -86,15 +87,15 @@ GroupRelations relations_of(const LinearGroup &group) {
     return found;
 }
 
-Linear Linear::of_groups(const std::vector<LinearGroup> &groups) {
+LinearParts LinearParts::of_groups(const std::vector<LinearGroup> &groups) {
     constexpr double same = 1e-3;  // a group on a line within a plane says what the plane says
     std::vector<LinearRelation> all;
     for (const LinearGroup &group : groups)
         for (LinearRelation &one : relations_of(group).relations) all.push_back(std::move(one));
-    return Linear(all, same);
+    return LinearParts(all, same);
 }
 
-Linear::Linear(const std::vector<LinearRelation> &all, double least) {
+LinearParts::LinearParts(const std::vector<LinearRelation> &all, double least) {
     std::unordered_map<std::int64_t, std::int64_t> parent;
     const auto root = [&](std::int64_t atom) {
         while (parent.at(atom) != atom) atom = parent[atom] = parent.at(parent.at(atom));
@@ -145,7 +146,7 @@ Linear::Linear(const std::vector<LinearRelation> &all, double least) {
         fixed_.push_back(std::move(fixed));
         if (!leaders.left_out.empty()) left_out_ = its[at(leaders.left_out[0])];
         for (std::size_t i = 0; i < atoms.size(); ++i)
-            place_of_[atoms[i]] = {
+            membership_of_[atoms[i]] = {
                 parts_.size(), i,
                 std::binary_search(leaders.atoms.begin(), leaders.atoms.end(), static_cast<std::int32_t>(i))};
         leaders_.push_back(std::move(leaders));

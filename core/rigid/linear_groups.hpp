@@ -45,31 +45,31 @@ private:
 
 // Bodies that share atoms with the groups are such groups, too: they are taken out of the lists.
 inline void take_sharing_bodies(std::vector<std::int64_t> &sizes, std::vector<std::int64_t> &atoms,
-                                std::vector<double> &places, LinearGroups &groups) {
+                                std::vector<double> &coordinates, LinearGroups &groups) {
     std::vector<std::int64_t> kept_sizes, kept_atoms;
-    std::vector<double> kept_places;
+    std::vector<double> kept_coordinates;
     std::vector<LinearGroup> taken;
     auto atom = atoms.begin();
-    auto place = places.begin();
+    auto next = coordinates.begin();
     for (const std::int64_t size : sizes) {
-        LinearGroup body{{atom, atom + size}, {place, place + 3 * size}, 1};
+        LinearGroup body{{atom, atom + size}, {next, next + 3 * size}, 1};
         atom += size;
-        place += 3 * size;
+        next += 3 * size;
         const bool shares =
             std::any_of(body.atoms.begin(), body.atoms.end(), [&](std::int64_t its) { return groups.has(its); });
         if (shares) {
-            for (std::size_t e = 0; e < body.places.size(); ++e)
-                if (body.places[e] != 0) body.dimension = std::max(body.dimension, static_cast<int>(e % 3) + 1);
+            for (std::size_t e = 0; e < body.coordinates.size(); ++e)
+                if (body.coordinates[e] != 0) body.dimension = std::max(body.dimension, static_cast<int>(e % 3) + 1);
             taken.push_back(std::move(body));
             continue;
         }
         kept_sizes.push_back(size);
         kept_atoms.insert(kept_atoms.end(), body.atoms.begin(), body.atoms.end());
-        kept_places.insert(kept_places.end(), body.places.begin(), body.places.end());
+        kept_coordinates.insert(kept_coordinates.end(), body.coordinates.begin(), body.coordinates.end());
     }
     sizes = std::move(kept_sizes);
     atoms = std::move(kept_atoms);
-    places = std::move(kept_places);
+    coordinates = std::move(kept_coordinates);
     for (LinearGroup &body : taken) groups.add(std::move(body));
 }
 

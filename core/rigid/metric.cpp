@@ -11,33 +11,33 @@ namespace holonomic::rigid {
 
 namespace {
 
-struct MetricWork final : Work {
+struct BodyMetric final : BodyWork {
     const Cell &box;
     const MetricCall &call;
     const bool in_order;
-    MetricWork(const Chains &chains, const MetricCall &call_)
+    BodyMetric(const Chains &chains, const MetricCall &call_)
         : box(chains.box), call(call_), in_order(call_.force.x && !chains.bodies()->fixed_atoms().empty()) {}
     bool is_in_order() const override { return in_order; }
 
-    Outcome molecule(const System &system, const Place &place, Tally &tally) const override {
-        const Shape &s = system.shape();
-        system.read(call.r, box, place, system.now);
+    Outcome molecule(const System &system, const MoleculeView &view, Tally &tally) const override {
+        const MoleculeKind &s = system.kind();
+        system.read(call.r, box, view, system.now);
         system.differentiate(system.now);
         double log_det, log_det_z;
         const Outcome outcome = system.metric(system.now, &log_det, &log_det_z, system.a);
         if (outcome != Outcome::good) return outcome;
-        if (call.log_det) call.log_det[place.number] = log_det;
-        if (call.log_det_z) call.log_det_z[place.number] = log_det_z;
+        if (call.log_det) call.log_det[view.number] = log_det;
+        if (call.log_det_z) call.log_det_z[view.number] = log_det_z;
         tally.log_det += log_det;
         for (std::int32_t i = 0; call.force.x && i < s.n_atoms; ++i) {
             const Vector3<double> slope = rounded(system.a[s.node_of[at(i)]]);
             const double factor = -0.5 * call.kT;
             double force[3] = {factor * slope.x, factor * slope.y, factor * slope.z}, before[3];
             if (call.add || i >= s.n_movable) {
-                read_atom(call.force, place.atoms[i], before);
+                read_atom(call.force, view.atoms[i], before);
                 for (int c = 0; c < 3; ++c) force[c] += before[c];
             }
-            write_atom(call.force, place.atoms[i], force);
+            write_atom(call.force, view.atoms[i], force);
         }
         return outcome;
     }
@@ -55,7 +55,7 @@ Outcome System::metric(const Conformation &where, double *log_det, double *log_d
     std::fill(of_entry, of_entry + s_.entries.size(), none);
     for (const Product &p : s_.products) {
         const double w = s_.w[at(s_.entries[at(p.a)].node)];
-        const DoublePair twice = 2 * w * (p.of_diagonal ? residual_[p.place] : inverse_[p.place]);
+        const DoublePair twice = 2 * w * (p.of_diagonal ? residual_[p.element] : inverse_[p.element]);
         of_entry[p.a] = of_entry[p.a] + twice * where.gradient[p.b];
         if (!p.of_diagonal) of_entry[p.b] = of_entry[p.b] + twice * where.gradient[p.a];
     }
@@ -88,7 +88,7 @@ Outcome System::metric(const Conformation &where, double *log_det, double *log_d
 void need_metric(const Chains &chains) {
     const Bodies *const bodies = chains.bodies();
     for (std::int64_t m = 0; bodies && m < bodies->n_molecules(); ++m)
-        if (!bodies->shape(m).has_images)
+        if (!bodies->kind(m).has_images)
             throw make_error(
                 Status::unsupported,
                 "the metric determinant of molecules with rigid bodies is not implemented: of a body alone "
@@ -96,7 +96,7 @@ void need_metric(const Chains &chains) {
 }
 
 double metric(const Chains &chains, const MetricCall &call) {
-    const Found found = run(chains, MetricWork(chains, call));
+    const RunResult found = run(chains, BodyMetric(chains, call));
     if (found.tally.n_bad > 0) {
         const Named arrays[] = {{"position", &call.r}};
         throw error_of(chains, found, arrays, 1);

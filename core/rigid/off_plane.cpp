@@ -3,7 +3,7 @@
 //     r_s = c + y_1 u_1 + y_2 u_2 + z u_1 x u_2
 //
 // so that, with the force f on it, z u_2 x f comes to u_1 and z f x u_1 to u_2, as the site's virtual work has them. It
-// is no sum of masses' places with constant factors: carrying its force adds to the virial.
+// is no sum of masses' coordinates with constant factors: carrying its force adds to the virial.
 #include "core/rigid/rates.hpp"
 
 namespace holonomic::rigid {
@@ -12,7 +12,7 @@ namespace {
 
 // z of an atom, or null.
 const DoublePair *lift_of(const System &system, std::int32_t atom, const Part **part) {
-    const Shape &s = system.shape();
+    const MoleculeKind &s = system.kind();
     if (atom >= s.n_held) return nullptr;
     *part = &s.parts[static_cast<std::size_t>(s.part_of[static_cast<std::size_t>(atom)])];
     const Body &its = system.body(**part);
@@ -23,13 +23,13 @@ const DoublePair *lift_of(const System &system, std::int32_t atom, const Part **
 
 }  // namespace
 
-PairVector System::place_of(const Conformation &where, std::int32_t atom) const {
-    const PairVector place = at_atom(where.q, atom);
+PairVector System::position_of(const Conformation &where, std::int32_t atom) const {
+    const PairVector view = at_atom(where.q, atom);
     const Part *part;
     const DoublePair *const z = lift_of(*this, atom, &part);
-    if (!z) return place;
+    if (!z) return view;
     const PairVector *const u = where.q + part->first_node + 1;
-    return place + *z * cross(u[0], u[1]);
+    return view + *z * cross(u[0], u[1]);
 }
 
 // Relative to what flows with the box, as all velocities are.
@@ -44,14 +44,14 @@ PairVector System::velocity_of(const Conformation &where, const PairVector *v, c
     return velocity + *z * (turn - flow(rate, cross(u[0], u[1])));
 }
 
-PairVector System::lifted_force(const Part &part, const AtomArray &f, const Place &place) const {
+PairVector System::lifted_force(const Part &part, const AtomArray &f, const MoleculeView &view) const {
     const Body &its = body(part);
     PairVector sum = {as_pair(0), as_pair(0), as_pair(0)};
     for (std::int32_t i = 0; i < its.n_atoms; ++i) {
         const DoublePair &z = its.z[static_cast<std::size_t>(i)];
         if (z.hi == 0) continue;
         double x[3];
-        read_atom(f, place.atoms[part.first_atom + i], x);
+        read_atom(f, view.atoms[part.first_atom + i], x);
         sum = sum + z * PairVector{as_pair(x[0]), as_pair(x[1]), as_pair(x[2])};
     }
     return sum;
@@ -65,11 +65,11 @@ void System::carry_to_axes(const Conformation &where, const Part &part, const Pa
     to[1] = to[1] + cross(lifted, u[0]);
 }
 
-void System::add_virial_of_sites(const Conformation &where, const AtomArray &f, const Place &place,
+void System::add_virial_of_sites(const Conformation &where, const AtomArray &f, const MoleculeView &view,
                                  double *virial) const {
     for (const Part &part : s_.parts) {
         if (body(part).z.empty()) continue;
-        const PairVector *const u = where.q + part.first_node + 1, lifted = lifted_force(part, f, place);
+        const PairVector *const u = where.q + part.first_node + 1, lifted = lifted_force(part, f, view);
         const Vector3<double> arm[3] = {rounded(u[0]), rounded(u[1]), rounded(-cross(u[0], u[1]))},
                               force[3] = {rounded(cross(u[1], lifted)), rounded(cross(lifted, u[0])), rounded(lifted)};
         for (int k = 0; k < 3; ++k) {

@@ -24,10 +24,10 @@ public:
     PlanarRing(const Graph &graph, Atom first, Atom second, double tolerance, std::int64_t &steps)
         : graph_(graph), ring_{first, second}, tolerance_(tolerance), steps_(steps) {}
 
-    // Then ring() goes around, and places() has [..][3] of it.
+    // Then ring() goes around, and coordinates() has [..][3] of it.
     bool find() { return extend(0); }
     const std::vector<Atom> &ring() const { return ring_; }
-    const std::vector<double> &places() const { return places_; }
+    const std::vector<double> &coordinates() const { return coordinates_; }
 
 private:
     static constexpr double circle = 6.283185307179586;
@@ -78,8 +78,8 @@ private:
                     graph_.square(ring_[static_cast<std::size_t>(i)], ring_[static_cast<std::size_t>(j)]);
                 if (square > 0) wanted.at(i, j) = wanted.at(j, i) = std::sqrt(square);
             }
-        places_ = turned();
-        const Misfit misfit = fit_places(wanted, 2, places_);
+        coordinates_ = turned();
+        const Misfit misfit = fit_coordinates(wanted, 2, coordinates_);
         const Decimals decimals(wanted, tolerance_, [&] { return graph_.lengths_around(ring_[0]); });
         return decimals.are_full() ? excess <= rounded(n) && misfit.error <= decimals.most() : decimals.allow(misfit);
     }
@@ -102,7 +102,7 @@ private:
 
     const Graph &graph_;
     std::vector<Atom> ring_;
-    std::vector<double> places_;
+    std::vector<double> coordinates_;
     const double tolerance_;
     std::int64_t &steps_;
 };

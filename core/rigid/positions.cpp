@@ -6,6 +6,7 @@
 #include "core/rigid/run.hpp"
 #include "core/rigid/verbs.hpp"
 #include "core/rigid/within.hpp"
+#include "core/run/execute.hpp"
 #include "core/run/kernel_choice.hpp"
 
 namespace holonomic::rigid {
@@ -20,7 +21,7 @@ double size_of(const PairVector &a) {
     return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
 }
 
-struct PositionsWork final : Work {
+struct BodyPositions final : BodyWork {
     AtomArray r_ref, r, v;
     const Cell &box_ref, &box;
     const BoxRate *rate;
@@ -29,7 +30,7 @@ struct PositionsWork final : Work {
     bool virial, report, check;
     PositionsCall call;
 
-    PositionsWork(const Chains &chains, const AtomArray &r_ref_, const Cell &box_ref_, const AtomArray &r_,
+    BodyPositions(const Chains &chains, const AtomArray &r_ref_, const Cell &box_ref_, const AtomArray &r_,
                   const AtomArray &v_, double dt_, double *lambda_, bool virial_, bool report_, bool check_)
         : r_ref(r_ref_), r(r_), v(v_), box_ref(box_ref_), box(chains.box), rate(chains.box_rate()), dt(dt_),
           lambda(lambda_), tolerance(chains.tolerance), most_iterations(chains.max_iterations), virial(virial_),
@@ -57,7 +58,7 @@ struct PositionsWork final : Work {
 
     // Whether everything is where it should be, to the rounding of the coordinates. system.t: residuals of rows.
     bool is_done(const System &system) const {
-        const Shape &s = system.shape();
+        const MoleculeKind &s = system.kind();
         double largest = 0;
         for (std::int64_t i = 0; i < 3 * std::int64_t{s.n_atoms}; ++i)
             largest = std::max(largest, std::fabs(system.raw[i]));
@@ -67,7 +68,7 @@ struct PositionsWork final : Work {
                 return false;
         for (std::int32_t i = 0; i < s.n_held; ++i) {
             const double size = system.body(s.parts[at(s.part_of[at(i)])]).extent;
-            if (!(size_of(system.place_of(system.now, i) - system.now.x[i]) <=
+            if (!(size_of(system.position_of(system.now, i) - system.now.x[i]) <=
                   std::max(2 * rounding, tolerance / 2 * size)))
                 return false;
         }
@@ -75,7 +76,7 @@ struct PositionsWork final : Work {
     }
 
     bool is_stretched(const System &system) const {
-        const Shape &s = system.shape();
+        const MoleculeKind &s = system.kind();
         for (std::int32_t k = 0; k < s.n_rows; ++k) {
             const std::int32_t bond = s.bond_of_row[at(k)];
             if (bond >= 0 && size_of(system.bond_vector(system.now, bond)) > most_stretched * s.bonds[at(bond)].length)
@@ -97,16 +98,16 @@ struct PositionsWork final : Work {
         if (take_worst(tally, error, number)) tally.worst_bond = bond;
     }
 
-    void write_lambda(const System &system, const Place &place, double factor) const {
-        const Shape &s = system.shape();
+    void write_lambda(const System &system, const MoleculeView &view, double factor) const {
+        const MoleculeKind &s = system.kind();
         for (std::size_t k = 0; lambda && k < s.bonds.size(); ++k)
-            lambda[place.bonds[k]] = factor * multiplier_of(system, k);
+            lambda[view.bonds[k]] = factor * multiplier_of(system, k);
     }
 
-    Outcome molecule(const System &system, const Place &place, Tally &tally) const override {
-        const Shape &s = system.shape();
-        system.read(r_ref, box_ref, place, system.reference);
-        system.read(r, box, place, system.now);
+    Outcome molecule(const System &system, const MoleculeView &view, Tally &tally) const override {
+        const MoleculeKind &s = system.kind();
+        system.read(r_ref, box_ref, view, system.reference);
+        system.read(r, box, view, system.now);
         std::int32_t worst_bond;
         const double before = system.residuals(system.now, system.t, &worst_bond);
         if (!std::isfinite(before)) return Outcome::not_finite;
@@ -114,8 +115,8 @@ struct PositionsWork final : Work {
         if (is_done(system)) {
             std::fill(system.t, system.t + s.n_rows, as_pair(0));
             if (s.by_lengths) std::fill(system.within, system.within + s.bonds.size(), 0.0);
-            write_lambda(system, place, 1);
-            note(place.number, 0, false, before, worst_bond, tally);
+            write_lambda(system, view, 1);
+            note(view.number, 0, false, before, worst_bond, tally);
             return Outcome::good;
         }
         system.differentiate(system.reference);
@@ -126,62 +127,63 @@ struct PositionsWork final : Work {
         if (outcome != Outcome::good) return outcome;
         double sum = 0;
         for (std::int32_t i = 0; i < s.n_movable; ++i)
-            sum += size_of(system.place_of(system.now, i)) + size_of(system.now.x[i]) + size_of(system.reference.x[i]);
+            sum +=
+                size_of(system.position_of(system.now, i)) + size_of(system.now.x[i]) + size_of(system.reference.x[i]);
         if (!std::isfinite(sum)) return Outcome::not_finite;
         if (s.by_lengths && lambda) share(system);
-        write_atoms(system, place);
-        write_lambda(system, place, 0.5 / (dt * dt));
+        write_atoms(system, view);
+        write_lambda(system, view, 0.5 / (dt * dt));
         if (virial) system.add_virial(system.reference, system.t, 1 / (dt * dt), tally.virial);
-        note(place.number, iterations, true, error, -1, tally);
+        note(view.number, iterations, true, error, -1, tally);
         return outcome;
     }
 
     // The moves, times the masses.
     void share(const System &system) const {
-        const Shape &s = system.shape();
+        const MoleculeKind &s = system.kind();
         double *force = force_within(system);
         for (std::int32_t i = 0; i < s.n_held; ++i) {
-            const PairVector moved = system.place_of(system.now, i) - system.now.x[i];
+            const PairVector moved = system.position_of(system.now, i) - system.now.x[i];
             const Vector3<double> push = rounded(s.mass[at(i)] * moved);
             *force++ = push.x, *force++ = push.y, *force++ = push.z;
         }
         share_within(system, system.reference);
     }
 
-    // Sites have no momentum of their own: their velocities are those of the body at their places.
-    void write_atoms(const System &system, const Place &place) const {
-        const Shape &s = system.shape();
+    // Sites have no momentum of their own: their velocities are those of the body where they are.
+    void write_atoms(const System &system, const MoleculeView &view) const {
+        const MoleculeKind &s = system.kind();
         for (std::int32_t i = 0; i < s.n_movable; ++i) {
-            const PairVector moved = system.place_of(system.now, i) - system.now.x[i];
+            const PairVector moved = system.position_of(system.now, i) - system.now.x[i];
             const double *const from = system.raw + 3 * std::ptrdiff_t{i};
             const double x[3] = {rounded(as_pair(from[0]) + moved.x), rounded(as_pair(from[1]) + moved.y),
                                  rounded(as_pair(from[2]) + moved.z)};
-            write_atom(r, place.atoms[i], x);
+            write_atom(r, view.atoms[i], x);
             if (!v.x || s.mass[at(i)] == 0) continue;
             double u[3];
-            read_atom(v, place.atoms[i], u);
+            read_atom(v, view.atoms[i], u);
             u[0] += rounded(moved.x) / dt;
             u[1] += rounded(moved.y) / dt;
             u[2] += rounded(moved.z) / dt;
-            write_atom(v, place.atoms[i], u);
+            write_atom(v, view.atoms[i], u);
         }
         if (!v.x) return;
         bool any = false;
         for (std::int32_t i = 0; i < s.n_held; ++i) any = any || s.mass[at(i)] == 0;
         if (!any) return;
-        system.velocities(v, place, system.a);
+        system.velocities(v, view, system.a);
         for (std::int32_t i = 0; i < s.n_held; ++i) {
             if (s.mass[at(i)] > 0) continue;
             const Vector3<double> u = rounded(system.velocity_of(system.now, system.a, rate, i));
             const double x[3] = {u.x, u.y, u.z};
-            write_atom(v, place.atoms[i], x);
+            write_atom(v, view.atoms[i], x);
         }
     }
 };
 
 // Goes through all molecules, and adds to the report. Returns the sums.
-Tally run_positions(const Chains &chains, const PositionsWork &work, Report *report) {
-    const Found found = run(chains, work);
+Tally run_positions(const Chains &chains, const BodyPositions &work, Report *report) {
+    const RunResult found = run(chains, work);
     const Tally &tally = found.tally;
     if (report) {
         report->iterations = std::max(report->iterations, tally.iterations);
@@ -207,16 +209,15 @@ void project_positions(const Chains &chains, const AtomArray &r_ref, const AtomA
                        double *lambda, double *virial, Report *report) {
     const Tally tally =
         run_positions(chains,
-                      PositionsWork(chains, r_ref, chains.box_of_reference(), r, v, dt, lambda, virial != nullptr,
+                      BodyPositions(chains, r_ref, chains.box_of_reference(), r, v, dt, lambda, virial != nullptr,
                                     report != nullptr, chains.checks() != Checks::never),
                       report);
-    const int place[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
-    for (int i = 0; virial && i < 9; ++i) virial[i] += tally.virial[place[i]];
+    if (virial) add_virial(tally, virial);
 }
 
 void impose(const Chains &chains, const AtomArray &r, Report *report) {
     run_positions(chains,
-                  PositionsWork(chains, r, chains.box, r, AtomArray{}, 1, nullptr, false, report != nullptr, false),
+                  BodyPositions(chains, r, chains.box, r, AtomArray{}, 1, nullptr, false, report != nullptr, false),
                   report);
 }
 

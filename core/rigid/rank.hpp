@@ -20,19 +20,20 @@ public:
     // An atom: of which free ones, counted from 0, it is a combination. A fixed one of none, and it has a place.
     struct End {
         std::vector<std::pair<std::int64_t, Number>> of;
-        Number place[3];
+        Number position[3];
     };
     static End free(std::int64_t column) {
-        return {{{column, 1}}, {place(column, 0), place(column, 1), place(column, 2)}};
+        return {{{column, 1}}, {position(column, 0), position(column, 1), position(column, 2)}};
     }
     static End fixed(std::int64_t atom) {
-        return {{}, {place(-1 - atom, 0), place(-1 - atom, 1), place(-1 - atom, 2)}};
+        return {{}, {position(-1 - atom, 0), position(-1 - atom, 1), position(-1 - atom, 2)}};
     }
     // A point with coefficients of free ones.
     static End combination(std::vector<std::pair<std::int64_t, Number>> of) {
         End end{std::move(of), {0, 0, 0}};
         for (const auto &[column, c] : end.of)
-            for (int x = 0; x < 3; ++x) end.place[x] = minus(end.place[x], times(minus(0, c), place(column, x)));
+            for (int x = 0; x < 3; ++x)
+                end.position[x] = minus(end.position[x], times(minus(0, c), position(column, x)));
         return end;
     }
     // Of each atom, the coefficients of the leaders: [n_atoms][leaders]. Those of the relations are taken to 40 binary
@@ -75,7 +76,7 @@ public:
     bool add(const End &i, const End &j) {
         std::map<std::int64_t, Number> row;
         for (int x = 0; x < 3; ++x) {
-            const Number d = minus(j.place[x], i.place[x]);
+            const Number d = minus(j.position[x], i.position[x]);
             for (const auto &[column, c] : i.of) row[3 * column + x] = minus(row[3 * column + x], times(c, d));
             for (const auto &[column, c] : j.of)
                 row[3 * column + x] = minus(row[3 * column + x], times(minus(0, c), d));
@@ -134,7 +135,7 @@ private:
         row[last] = minus(row[last], sum);
         return row;
     }
-    static Number place(std::int64_t atom, int x) {
+    static Number position(std::int64_t atom, int x) {
         return mix(mix(0x9e3779b97f4a7c15u, static_cast<std::uint64_t>(atom)), static_cast<std::uint64_t>(x)) % prime;
     }
     void keep(const std::map<std::int64_t, Number> &row) {

@@ -12,7 +12,7 @@ namespace holonomic::rigid {
 
 class RankOfLinear {
 public:
-    explicit RankOfLinear(const Linear &linear) : linear_(linear) {
+    explicit RankOfLinear(const LinearParts &linear) : linear_(linear) {
         for (std::size_t p = 0; p < linear.parts().size(); ++p)
             followers_.push_back(Rank::followers(linear.relations()[p], linear.leaders()[p]));
     }
@@ -26,25 +26,25 @@ public:
 
 private:
     bool follows(std::int64_t atom) const {
-        const Linear::Place *const place = linear_.find(atom);
-        return place && !place->leads;
+        const LinearParts::Membership *const membership = linear_.find(atom);
+        return membership && !membership->leads;
     }
     std::int64_t column(std::int64_t atom) {
         return column_.emplace(atom, static_cast<std::int64_t>(column_.size())).first->second;
     }
     template <class IsFixed>
     Rank::End end(std::int64_t atom, const IsFixed &is_fixed) {
-        const Linear::Place *const place = linear_.find(atom);
-        if (!place) return is_fixed(atom) ? Rank::fixed(atom) : Rank::free(column(atom));
-        const std::vector<std::int32_t> &leaders = linear_.leaders()[place->part].atoms;
+        const LinearParts::Membership *const membership = linear_.find(atom);
+        if (!membership) return is_fixed(atom) ? Rank::fixed(atom) : Rank::free(column(atom));
+        const std::vector<std::int32_t> &leaders = linear_.leaders()[membership->part].atoms;
         std::vector<std::pair<std::int64_t, Rank::Number>> of;
         for (std::size_t l = 0; l < leaders.size(); ++l)
-            of.emplace_back(column(linear_.parts()[place->part][static_cast<std::size_t>(leaders[l])]),
-                            followers_[place->part][place->atom * leaders.size() + l]);
+            of.emplace_back(column(linear_.parts()[membership->part][static_cast<std::size_t>(leaders[l])]),
+                            followers_[membership->part][membership->atom * leaders.size() + l]);
         return Rank::combination(std::move(of));
     }
 
-    const Linear &linear_;
+    const LinearParts &linear_;
     Rank rank_;
     std::vector<std::vector<Rank::Number>> followers_;
     std::unordered_map<std::int64_t, std::int64_t> column_;

@@ -15,7 +15,7 @@ inline PairVector flow(const BoxRate *rate, const PairVector &d) {
 // The relative velocity of a bond's ends.
 inline PairVector bond_rate(const System &system, std::int32_t row, const PairVector *v, const BoxRate *rate,
                             const PairVector &d) {
-    const Shape &s = system.shape();
+    const MoleculeKind &s = system.kind();
     PairVector u = flow(rate, d);
     for (std::int32_t e = s.entry_start[static_cast<std::size_t>(row)];
          v && e < s.entry_start[static_cast<std::size_t>(row) + 1]; ++e) {
@@ -29,7 +29,7 @@ inline PairVector bond_rate(const System &system, std::int32_t row, const PairVe
 // equal for bonds and for the squares of bodies. v: per node, or null: at rest.
 template <class Each>
 void for_rates(const System &system, const PairVector *v, const BoxRate *rate, const Each &each) {
-    const Shape &s = system.shape();
+    const MoleculeKind &s = system.kind();
     const PairVector none = {as_pair(0), as_pair(0), as_pair(0)};
     for (std::int32_t k = 0; k < s.n_rows; ++k) {
         const std::int32_t bond = s.bond_of_row[static_cast<std::size_t>(k)];

@@ -11,25 +11,25 @@ namespace holonomic::rigid {
 
 namespace {
 
-struct ReactionsWork final : Work {
+struct BodyReactions final : BodyWork {
     AtomArray r;
     const Cell &box;
     const double *lambda;
     Reactions out;
     bool in_order;
 
-    ReactionsWork(const Chains &chains, const AtomArray &r_, const Cell &box_, const double *lambda_,
+    BodyReactions(const Chains &chains, const AtomArray &r_, const Cell &box_, const double *lambda_,
                   const Reactions &out_)
         : r(r_), box(box_), lambda(lambda_), out(out_), in_order(out.g.x && !chains.bodies()->fixed_atoms().empty()) {}
     bool is_in_order() const override { return in_order; }
 
-    Outcome molecule(const System &system, const Place &place, Tally &tally) const override {
-        const Shape &s = system.shape();
-        system.read(r, box, place, system.now);
+    Outcome molecule(const System &system, const MoleculeView &view, Tally &tally) const override {
+        const MoleculeKind &s = system.kind();
+        system.read(r, box, view, system.now);
         double size = 0;
         for (std::size_t k = 0; k < s.bonds.size(); ++k) {
             const Vector3<double> d = vector_of(system, system.now, k);
-            const double square = d.x * d.x + d.y * d.y + d.z * d.z, t = 2 * lambda[place.bonds[k]];
+            const double square = d.x * d.x + d.y * d.y + d.z * d.z, t = 2 * lambda[view.bonds[k]];
             size += std::fabs(t) * (square + 4 * std::sqrt(square)) + square;
         }
         if (!std::isfinite(size)) return Outcome::not_finite;
@@ -37,7 +37,7 @@ struct ReactionsWork final : Work {
         std::fill(force, force + 3 * std::ptrdiff_t{s.n_atoms}, 0.0);
         for (const Bond &bond : s.bonds) {
             const std::size_t k = static_cast<std::size_t>(&bond - s.bonds.data());
-            const std::int64_t number = place.bonds[k];
+            const std::int64_t number = view.bonds[k];
             const Vector3<double> v = vector_of(system, system.now, k);
             const double d[3] = {v.x, v.y, v.z}, t = 2 * lambda[number];
             if (out.tension) out.tension[number] = t * std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
@@ -52,9 +52,9 @@ struct ReactionsWork final : Work {
         }
         for (std::int32_t i = 0; out.g.x && i < s.n_atoms; ++i) {
             double x[3] = {0, 0, 0};
-            if (out.add || i >= s.n_movable) read_atom(out.g, place.atoms[i], x);
+            if (out.add || i >= s.n_movable) read_atom(out.g, view.atoms[i], x);
             for (int c = 0; c < 3; ++c) x[c] += force[3 * at(i) + at(c)];
-            write_atom(out.g, place.atoms[i], x);
+            write_atom(out.g, view.atoms[i], x);
         }
         return Outcome::good;
     }
@@ -64,14 +64,14 @@ struct ReactionsWork final : Work {
 
 void reactions(const Chains &chains, const AtomArray &r, const Cell &box, const double *lambda, const Reactions &out,
                double *virial) {
-    const Found found = run(chains, ReactionsWork(chains, r, box, lambda, out));
+    const RunResult found = run(chains, BodyReactions(chains, r, box, lambda, out));
     if (found.tally.n_bad > 0) {
         const Named arrays[] = {{"position", &r}};
         throw error_of_values(chains, found.tally.first_bad - chains.n_chains(), lambda, "multiplier",
                               error_of(chains, found, arrays, 1));
     }
-    const int place[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
-    for (int i = 0; virial && i < 9; ++i) virial[i] += found.tally.virial[place[i]];
+    const int element[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
+    for (int i = 0; virial && i < 9; ++i) virial[i] += found.tally.virial[element[i]];
 }
 
 }  // namespace holonomic::rigid

@@ -8,9 +8,9 @@ namespace holonomic::rigid {
 
 namespace {
 
-class Elimination {
+class RelationElimination {
 public:
-    explicit Elimination(const Relations &relations)
+    explicit RelationElimination(const Relations &relations)
         : n_(relations.n_atoms), n_fixed_(relations.n_fixed), rows_(at(relations.count())), row_of_(at(n_), -1) {
         for (std::int32_t k = 0; k < relations.count(); ++k) {
             std::vector<double> c(relations.row(k), relations.row(k) + n_);
@@ -84,6 +84,6 @@ private:
 
 }  // namespace
 
-Leaders leaders_of(const Relations &relations, double least) { return Elimination(relations).run(least); }
+Leaders leaders_of(const Relations &relations, double least) { return RelationElimination(relations).run(least); }
 
 }  // namespace holonomic::rigid

@@ -1,6 +1,6 @@
 // Linear relations among atoms, sum c_i r_i = 0 with sum c_i = 0, in each coordinate: a site by its base, an atom that
 // two bodies share, centroids that are one point. What they leave free is the span of constant vectors over the atoms.
-// Fixed atoms among them, at places that the caller has, are terms of the same sums.
+// Fixed atoms among them, at coordinates that the caller has, are terms of the same sums.
 #pragma once
 
 #include <cstdint>

@@ -9,32 +9,33 @@ namespace holonomic::rigid {
 
 namespace {
 
-struct ResidualsWork final : Work {
+struct BodyResiduals final : BodyWork {
     AtomArray r, v;
     const Cell &box;
     const BoxRate *box_rate;
     double *length, *rate;
 
-    ResidualsWork(const Chains &chains, const AtomArray &r_, const AtomArray &v_, double *length_, double *rate_)
+    BodyResiduals(const Chains &chains, const AtomArray &r_, const AtomArray &v_, double *length_, double *rate_)
         : r(r_), v(v_), box(chains.box), box_rate(chains.box_rate()), length(length_), rate(rate_) {}
 
-    void place_bond(const Shape &shape, const Place &place, std::size_t k, const double (&x)[2][3], double *d) const {
-        if (!shape.has_images || box.shape == Box::none) return holonomic::bond_vector(box, x[0], x[1], d);
-        const Vector3<double> image = rounded(told_image(box, place, k));
+    void place_bond(const MoleculeKind &kind, const MoleculeView &view, std::size_t k, const double (&x)[2][3],
+                    double *d) const {
+        if (!kind.has_images || box.lattice == Box::none) return holonomic::bond_vector(box, x[0], x[1], d);
+        const Vector3<double> image = rounded(told_image(box, view, k));
         d[0] = x[1][0] - x[0][0] + image.x, d[1] = x[1][1] - x[0][1] + image.y, d[2] = x[1][2] - x[0][2] + image.z;
     }
     struct Residual {
         double length, rate;
     };
-    Residual residual_of(const Shape &shape, const Place &place, std::size_t k) const {
-        const Bond &bond = shape.bonds[k];
+    Residual residual_of(const MoleculeKind &kind, const MoleculeView &view, std::size_t k) const {
+        const Bond &bond = kind.bonds[k];
         double x[2][3], u[2][3] = {}, d[3], dd = 0, du = 0;
         const std::int32_t ends[2] = {bond.i, bond.j};
         for (int end = 0; end < 2; ++end) {
-            read_atom(r, place.atoms[ends[end]], x[end]);
-            if (v.x) read_atom(v, place.atoms[ends[end]], u[end]);
+            read_atom(r, view.atoms[ends[end]], x[end]);
+            if (v.x) read_atom(v, view.atoms[ends[end]], u[end]);
         }
-        place_bond(shape, place, k, x, d);
+        place_bond(kind, view, k, x, d);
         for (int c = 0; c < 3; ++c) {
             dd += d[c] * d[c];
             du += d[c] * (u[1][c] - u[0][c]);
@@ -43,16 +44,16 @@ struct ResidualsWork final : Work {
         return {(dd - bond.length * bond.length) / (bond.length * bond.length), du};
     }
 
-    Outcome molecule(const System &system, const Place &place, Tally &) const override {
-        const Shape &shape = system.shape();
-        for (std::size_t k = 0; k < shape.bonds.size(); ++k) {
-            const Residual left = residual_of(shape, place, k);
+    Outcome molecule(const System &system, const MoleculeView &view, Tally &) const override {
+        const MoleculeKind &kind = system.kind();
+        for (std::size_t k = 0; k < kind.bonds.size(); ++k) {
+            const Residual left = residual_of(kind, view, k);
             if (!std::isfinite(left.length) || !std::isfinite(left.rate)) return Outcome::not_finite;
         }
-        for (std::size_t k = 0; k < shape.bonds.size(); ++k) {
-            const Residual left = residual_of(shape, place, k);
-            if (length) length[place.bonds[k]] = left.length;
-            if (rate) rate[place.bonds[k]] = left.rate;
+        for (std::size_t k = 0; k < kind.bonds.size(); ++k) {
+            const Residual left = residual_of(kind, view, k);
+            if (length) length[view.bonds[k]] = left.length;
+            if (rate) rate[view.bonds[k]] = left.rate;
         }
         return Outcome::good;
     }
@@ -61,7 +62,7 @@ struct ResidualsWork final : Work {
 }  // namespace
 
 void residuals(const Chains &chains, const AtomArray &r, const AtomArray &v, double *length, double *rate) {
-    const Found found = run(chains, ResidualsWork(chains, r, v, length, rate));
+    const RunResult found = run(chains, BodyResiduals(chains, r, v, length, rate));
     if (found.tally.n_bad == 0) return;
     const Named arrays[] = {{"position", &r}, {"velocity", &v}};
     throw error_of(chains, found, arrays, 2);

@@ -19,11 +19,11 @@ namespace holonomic::rigid {
 namespace {
 
 // Molecules whose sums are added together, whatever the number of threads; and rows that a thread is worth.
-constexpr std::int64_t block = 64, rows_per_thread = 512;
+constexpr std::int64_t chunk_size = 64, rows_per_thread = 512;
 // Positions, velocities, forces and results of so many atoms fill a second-level cache.
 constexpr std::int64_t atoms_in_cache = 16384;
 
-void add(Found &total, const Found &part) {
+void add(RunResult &total, const RunResult &part) {
     if (part.tally.n_bad > 0 && total.tally.n_bad == 0) total.first_outcome = part.first_outcome;
     holonomic::add(total.tally, part.tally);
 }
@@ -32,18 +32,18 @@ void add(Found &total, const Found &part) {
 std::int32_t noted(Outcome why) { return bad_outcome - static_cast<std::int32_t>(why); }
 Outcome why(std::int32_t noted) { return static_cast<Outcome>(bad_outcome - noted); }
 
-class Block {
+class MoleculeChunk {
 public:
-    Block(const Chains &chains, const Work &work, char *memory, OutcomeOf *outcomes)
+    MoleculeChunk(const Chains &chains, const BodyWork &work, char *memory, OutcomeOf *outcomes)
         : chains_(chains), bodies_(*chains.bodies()), work_(work), memory_(memory), outcomes_(outcomes) {}
 
-    Found run(std::int64_t first) {
+    RunResult run(std::int64_t first) {
         found_ = {empty_tally(), Outcome::good};
-        const std::int64_t end = std::min(first + block, bodies_.n_molecules());
+        const std::int64_t end = std::min(first + chunk_size, bodies_.n_molecules());
         for (std::int64_t m = first; m < end; ++m) {
             if (!bodies_.is_active(m)) continue;
-            const Shape &shape = bodies_.shape(m);
-            if (!shape.is_lone_body || !work_.takes_blocks(!shape.bonds.empty())) {
+            const MoleculeKind &kind = bodies_.kind(m);
+            if (!kind.is_lone_body || !work_.takes_blocks(!kind.bonds.empty())) {
                 molecule(m);
                 continue;
             }
@@ -53,17 +53,17 @@ public:
     }
 
 private:
-    Place place(std::int64_t m) const {
+    MoleculeView view(std::int64_t m) const {
         return {bodies_.atoms(m), bodies_.bonds(m), chains_.n_chains() + m, chains_.images()};
     }
 
     OutcomeOf *outcome_of(std::int64_t m) const { return outcomes_ ? outcomes_ + chains_.n_chains() + m : nullptr; }
 
     void molecule(std::int64_t m) {
-        const System system(bodies_.shape(m), bodies_.kinds(), memory_);
+        const System system(bodies_.kind(m), bodies_.body_kinds(), memory_);
         Outcome outcome = Outcome::good;
         with_outcome(outcome_of(m), found_.tally, [&](Tally &tally) {
-            outcome = bodies_.shape(m).is_ordinary ? work_.molecule(system, place(m), tally) : Outcome::not_finite;
+            outcome = bodies_.kind(m).is_ordinary ? work_.molecule(system, view(m), tally) : Outcome::not_finite;
             if (outcome == Outcome::good) return;
             if (tally.n_bad == 0) found_.first_outcome = outcome;
             note_bad(chains_.n_chains() + m, tally);
@@ -73,20 +73,20 @@ private:
 
     // Bodies from number `first` on as long as they are alike; returns the first one that is not.
     std::int64_t side_by_side(std::int64_t first, std::int64_t end) {
-        static_assert(block <= most_in_unit && most_in_unit % most_lanes == 0);
-        const std::int32_t number = bodies_.shape_number(first);
-        if (shape_ != number) {
-            shape_ = number;
-            const Shape &shape = bodies_.shape(first);
-            kind_ = kind_of(bodies_.body(shape.parts[0]), shape);
+        static_assert(chunk_size <= most_in_unit && most_in_unit % most_lanes == 0);
+        const std::int32_t number = bodies_.kind_number(first);
+        if (kind_ != number) {
+            kind_ = number;
+            const MoleculeKind &kind = bodies_.kind(first);
+            body_kind_ = kind_of(bodies_.body(kind.parts[0]), kind);
         }
         BodyUnit unit;
-        unit.kind = &kind_;
-        std::int64_t molecules[block], next = first;
+        unit.kind = &body_kind_;
+        std::int64_t molecules[chunk_size], next = first;
         int count = 0;
         bool consecutive = true;
         const bool all_active = bodies_.all_active();
-        for (; next < end && bodies_.shape_number(next) == number; ++next) {
+        for (; next < end && bodies_.kind_number(next) == number; ++next) {
             if (!all_active && !bodies_.is_active(next)) continue;
             molecules[count] = next;
             unit.atoms[count] = bodies_.atoms(next);
@@ -101,10 +101,10 @@ private:
             unit.atoms[count] = unit.atoms[0];
             unit.first[count] = unit.first[0];
         }
-        BodyResult results[block];
+        BodyResult results[chunk_size];
         const std::uint64_t done =
             work_.bodies(unit, reinterpret_cast<double *>(memory_ + bodies_.scratch_bytes()), results);
-        const std::uint64_t all = unit.count < block ? (std::uint64_t{1} << unit.count) - 1 : ~std::uint64_t{0};
+        const std::uint64_t all = unit.count < chunk_size ? (std::uint64_t{1} << unit.count) - 1 : ~std::uint64_t{0};
         if (done == all && !work_.has_results() && !outcomes_) return next;
         for (int l = 0; l < unit.count; ++l) {
             if (!(done >> l & 1)) {
@@ -119,32 +119,32 @@ private:
 
     const Chains &chains_;
     const Bodies &bodies_;
-    const Work &work_;
+    const BodyWork &work_;
     char *const memory_;
     OutcomeOf *const outcomes_;
-    Found found_;
-    BodyKind kind_;
-    std::int32_t shape_ = -1;
+    RunResult found_;
+    BodyKind body_kind_;
+    std::int32_t kind_ = -1;
 };
 
 }  // namespace
 
 namespace {
 
-struct Memory {
+struct RunMemory {
     std::int64_t bytes, n_blocks;
     char *scratch;
-    Found *parts;
+    RunResult *parts;
 };
 
-Memory memory_of(const Chains &chains, std::int64_t least = 0) {
+RunMemory memory_of(const Chains &chains, std::int64_t least = 0) {
     const Bodies &bodies = *chains.bodies();
-    Memory m;
+    RunMemory m;
     m.bytes = std::max(bodies.scratch_bytes() + bodies.block_bytes(), least);
-    m.n_blocks = (bodies.n_molecules() + block - 1) / block;
+    m.n_blocks = (bodies.n_molecules() + chunk_size - 1) / chunk_size;
     m.scratch = static_cast<char *>(thread_memory(Keep::rigid, m.bytes));
-    m.parts =
-        static_cast<Found *>(thread_memory(Keep::chunk_tallies, m.n_blocks * static_cast<std::int64_t>(sizeof(Found))));
+    m.parts = static_cast<RunResult *>(
+        thread_memory(Keep::chunk_tallies, m.n_blocks * static_cast<std::int64_t>(sizeof(RunResult))));
     if (!m.scratch || !m.parts) throw std::bad_alloc();
     return m;
 }
@@ -156,7 +156,7 @@ void Parts::for_each_fixed(const Each &each) const {
     const Bodies &bodies = *chains_.bodies();
     for (std::int64_t m = 0; !bodies.fixed_atoms().empty() && m < bodies.n_molecules(); ++m) {
         if (!bodies.is_active(m)) continue;
-        const Shape &s = bodies.shape(m);
+        const MoleculeKind &s = bodies.kind(m);
         for (std::int32_t i = s.n_movable; i < s.n_atoms; ++i) each(bodies.atoms(m)[i]);
     }
 }
@@ -181,18 +181,18 @@ Parts::~Parts() {
     for_each_fixed([&](std::int64_t atom) { write_atom(cleared_, atom, next), next += 3; });
 }
 
-Found run(const Chains &chains, const Work &work) {
+RunResult run(const Chains &chains, const BodyWork &work) {
     const Bodies &bodies = *chains.bodies();
-    const Memory all = memory_of(chains);
+    const RunMemory all = memory_of(chains);
     const std::int64_t n_blocks = all.n_blocks;
     char *const own = all.scratch;
-    Found *const parts = all.parts;
+    RunResult *const parts = all.parts;
     OutcomeOf *const outcomes = outcomes_under_way();
     const int n_threads = static_cast<int>(std::min(std::min<std::int64_t>(chains.n_threads, n_blocks),
                                                     std::max<std::int64_t>(bodies.work() / rows_per_thread, 1)));
     const auto run_all = [&] {
-        Block one(chains, work, own, outcomes);
-        for (std::int64_t j = 0; j < n_blocks; ++j) parts[j] = one.run(j * block);
+        MoleculeChunk one(chains, work, own, outcomes);
+        for (std::int64_t j = 0; j < n_blocks; ++j) parts[j] = one.run(j * chunk_size);
     };
     if (n_threads <= 1 || work.is_in_order()) {
         run_all();
@@ -201,18 +201,18 @@ Found run(const Chains &chains, const Work &work) {
         // A thread that gets no memory leaves its share to the others; the calling thread has its own.
         on_threads(n_threads, [&](int) {
             char *const memory = static_cast<char *>(thread_memory(Keep::rigid, all.bytes));
-            Block one(chains, work, memory, outcomes);
-            for (std::int64_t j; memory && (j = next.fetch_add(1)) < n_blocks;) parts[j] = one.run(j * block);
+            MoleculeChunk one(chains, work, memory, outcomes);
+            for (std::int64_t j; memory && (j = next.fetch_add(1)) < n_blocks;) parts[j] = one.run(j * chunk_size);
         });
     }
-    Found total{empty_tally(), Outcome::good};
+    RunResult total{empty_tally(), Outcome::good};
     for (std::int64_t j = 0; j < n_blocks; ++j) add(total, parts[j]);
     return total;
 }
 
 Error error_of_values(const Chains &chains, std::int64_t molecule, const double *values, const char *what,
                       const Error &otherwise) {
-    const Shape &s = chains.bodies()->shape(molecule);
+    const MoleculeKind &s = chains.bodies()->kind(molecule);
     for (std::size_t k = 0; k < s.bonds.size(); ++k) {
         if (std::isfinite(values[chains.bodies()->bonds(molecule)[k]])) continue;
         Error error = make_error(Status::not_finite, "molecule %s: the %s of bond %lld is not finite",
@@ -229,10 +229,10 @@ Error error_of_values(const Chains &chains, std::int64_t molecule, const double 
 
 namespace {
 
-Error error_of_first(const Chains &chains, const Found &found, const Named *arrays, int n_arrays) {
+Error error_of_first(const Chains &chains, const RunResult &found, const Named *arrays, int n_arrays) {
     const Bodies &bodies = *chains.bodies();
     const std::int64_t m = found.tally.first_bad - chains.n_chains();
-    const Shape &shape = bodies.shape(m);
+    const MoleculeKind &kind = bodies.kind(m);
     const std::int64_t *const atoms = bodies.atoms(m);
     char name[160], others[80] = "";
     std::snprintf(name, sizeof name, "molecule %s", chains.name_of_rigid(found.tally.first_bad, atoms[0]).text);
@@ -248,7 +248,7 @@ Error error_of_first(const Chains &chains, const Found &found, const Named *arra
     };
     for (int a = 0; a < n_arrays; ++a) {
         if (!arrays[a].array->x) continue;
-        for (std::int32_t i = 0; i < shape.n_atoms; ++i) {
+        for (std::int32_t i = 0; i < kind.n_atoms; ++i) {
             double x[3];
             read_atom(*arrays[a].array, atoms[i], x);
             if (std::isfinite(x[0]) && std::isfinite(x[1]) && std::isfinite(x[2])) continue;
@@ -264,7 +264,7 @@ Error error_of_first(const Chains &chains, const Found &found, const Named *arra
                            "%s, with %d bodies, the first of atom %s: its constraints depend on each other at "
                            "these positions (a bond of length zero, a body that is collapsed, taut between "
                            "fixed atoms, or bonds that hold the same)%s",
-                           name, static_cast<int>(shape.parts.size()), chains.name_of_atom(atoms[0]).text, others),
+                           name, static_cast<int>(kind.parts.size()), chains.name_of_atom(atoms[0]).text, others),
                 -1);
         case Outcome::no_convergence:
         case Outcome::stretched:
@@ -273,7 +273,7 @@ Error error_of_first(const Chains &chains, const Found &found, const Named *arra
                     Status::no_convergence,
                     "%s, with %d bodies, the first of atom %s: nothing along the reference brings bodies and bonds "
                     "back from the positions to be projected; %s: %s%s",
-                    name, static_cast<int>(shape.parts.size()), chains.name_of_atom(atoms[0]).text,
+                    name, static_cast<int>(kind.parts.size()), chains.name_of_atom(atoms[0]).text,
                     box_in_words(chains.box), too_long_a_step, others),
                 -1);
         default:
@@ -285,11 +285,11 @@ Error error_of_first(const Chains &chains, const Found &found, const Named *arra
 
 }  // namespace
 
-Error error_of(const Chains &chains, const Found &found, const Named *arrays, int n_arrays) {
+Error error_of(const Chains &chains, const RunResult &found, const Named *arrays, int n_arrays) {
     OutcomeOf *const outcomes = outcomes_under_way();
     for (std::int64_t m = chains.n_chains(); outcomes && m < chains.n_molecules(); ++m) {
         if (outcomes[m].status >= 0) continue;
-        Found alone{found.tally, why(outcomes[m].status)};
+        RunResult alone{found.tally, why(outcomes[m].status)};
         alone.tally.first_bad = m;
         outcomes[m].status = static_cast<std::int32_t>(error_of_first(chains, alone, arrays, n_arrays).status);
     }

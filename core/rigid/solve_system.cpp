@@ -39,7 +39,7 @@ DoublePair wide_of(const DoublePair &x) { return x; }
 // last; -1: none. No order leaves less; a pivot alone tells nothing of what those before it have lost. One over what is
 // left is the diagonal of the inverse Z, which is found from its end, within the pattern of the factors, as
 // Z = D^-1 L^-1 + (1 - L^T) Z. diagonal [n_rows] and below [as l] are overwritten by it.
-std::int32_t dependent_row(const Shape &s, const Factor<DoublePair> &f, double least, DoublePair *diagonal,
+std::int32_t dependent_row(const MoleculeKind &s, const Factor<DoublePair> &f, double least, DoublePair *diagonal,
                            DoublePair *below) {
     const std::int32_t *const start = s.column_start.data(), *const row = s.row.data();
     for (std::int32_t k = s.n_rows - 1; k >= 0; --k) {
@@ -48,11 +48,11 @@ std::int32_t dependent_row(const Shape &s, const Factor<DoublePair> &f, double l
         diagonal[k] = as_pair(1) / f.diagonal[k];
         for (std::int32_t a = begin; a < end; ++a) {
             below[a] = below[a] - f.l[a] * diagonal[row[a]];
-            std::int32_t place = start[row[a]];
+            std::int32_t entry = start[row[a]];
             for (std::int32_t b = a + 1; b < end; ++b) {
-                while (row[place] < row[b]) ++place;
-                below[a] = below[a] - f.l[b] * below[place];
-                below[b] = below[b] - f.l[a] * below[place];
+                while (row[entry] < row[b]) ++entry;
+                below[a] = below[a] - f.l[b] * below[entry];
+                below[b] = below[b] - f.l[a] * below[entry];
             }
             diagonal[k] = diagonal[k] - f.l[a] * below[a];
         }
@@ -86,11 +86,11 @@ std::int32_t System::assemble(const Factor<T> &f, const Conformation &rows, cons
         const double w = s_.w[at(s_.entries[at(p.a)].node)];
         const T upper = w * product(p.a, p.b);
         if (p.of_diagonal) {
-            add_to(f.diagonal[p.place], upper);
+            add_to(f.diagonal[p.element], upper);
             continue;
         }
-        add_to(f.u[p.place], upper);
-        add_to(f.l[p.place], same ? upper : w * product(p.b, p.a));
+        add_to(f.u[p.element], upper);
+        add_to(f.l[p.element], same ? upper : w * product(p.b, p.a));
     }
     const std::int32_t bad = f.eliminate(s_, plain ? least_plain : least_wide);
     if constexpr (!plain)

@@ -41,15 +41,15 @@ class Sorting {
 public:
     Sorting(const Chains &chains, const Masses &masses, const AtomUse &use, std::int64_t n_bodies,
             const std::int64_t *sizes, const std::int64_t *atoms, std::int64_t offset, std::int64_t n_bonds,
-            const std::int64_t *pairs, const rigid::LooseParts *parts)
+            const std::int64_t *pairs, const rigid::AffineParts *parts)
         : chains_(chains), masses_(masses), use_(use), base_(chains.base), n_bodies_(n_bodies), n_bonds_(n_bonds),
           offset_(offset), sizes_(sizes), given_atoms_(atoms), given_pairs_(pairs), parts_(parts),
           joined_(at(n_bodies)) {}
 
-    std::vector<rigid::Given> sort(const double *places, const double *lengths) {
+    std::vector<rigid::Given> sort(const double *coordinates, const double *lengths) {
         take_bodies();
         take_bonds();
-        make_molecules(places);
+        make_molecules(coordinates);
         fixed_.resize(molecules_.size());
         if (parts_ && !parts_->fixed.empty()) add_fixed();
         add_bonds(lengths);
@@ -131,7 +131,7 @@ private:
     }
 
     // In the order of their first bodies.
-    void make_molecules(const double *places) {
+    void make_molecules(const double *coordinates) {
         molecule_of_body_.assign(at(n_bodies_), -1);
         const std::int64_t *next = given_atoms_;
         for (std::int64_t b = 0; b < n_bodies_; ++b) {
@@ -142,11 +142,11 @@ private:
             }
             rigid::Given &given = molecules_[at(molecule_of_body_[root])];
             given.sizes.push_back(static_cast<std::int32_t>(sizes_[b]));
-            if (parts_) given.loose.push_back(parts_->loose[at(b)]);
-            for (std::int64_t a = 0; a < sizes_[b]; ++a, ++next, places += 3) {
+            if (parts_) given.affine.push_back(parts_->affine[at(b)]);
+            for (std::int64_t a = 0; a < sizes_[b]; ++a, ++next, coordinates += 3) {
                 const std::int64_t atom = *next - base_ + offset_;
                 local_[atom] = append(given, atom);
-                given.place.insert(given.place.end(), places, places + 3);
+                given.coordinates.insert(given.coordinates.end(), coordinates, coordinates + 3);
             }
         }
         for (std::int64_t k = 0; k < n_bonds_; ++k)
@@ -228,7 +228,7 @@ private:
             const std::size_t m = at(molecule_of_atom(*first - base_ + offset_)), part = done[m]++;
             for (const std::int64_t given : parts_->fixed[at(b)]) {
                 const std::int64_t atom = take(given, -1);
-                molecules_[m].loose[part].fixed.push_back(fixed_atom(m, atom));
+                molecules_[m].affine[part].fixed.push_back(fixed_atom(m, atom));
             }
         }
     }
@@ -253,8 +253,9 @@ private:
             if (i >= 0 && j >= 0 && m >= 0) molecules_[at(m)].links.push_back({i, j});
         }
         for (rigid::Given &given : molecules_)
-            if (std::all_of(given.loose.begin(), given.loose.end(), [](const auto &loose) { return loose.is_rigid(); }))
-                given.loose.clear();
+            if (std::all_of(given.affine.begin(), given.affine.end(),
+                            [](const auto &affine) { return affine.is_rigid(); }))
+                given.affine.clear();
     }
 
     const Chains &chains_;
@@ -263,7 +264,7 @@ private:
     const int base_;
     const std::int64_t n_bodies_, n_bonds_, offset_;
     const std::int64_t *const sizes_, *const given_atoms_, *const given_pairs_;
-    const rigid::LooseParts *const parts_;
+    const rigid::AffineParts *const parts_;
     Joined joined_;  // bodies, then atoms of none
     std::unordered_map<std::int64_t, std::size_t> group_of_;
     std::vector<std::int64_t> others_;  // atoms that can move and are in no body
@@ -277,15 +278,17 @@ private:
 
 // The molecules of one call, or of one copy of its molecules, whose atoms stand `offset` further on.
 std::vector<rigid::Given> Chains::sort_rigid(std::int64_t n_bodies, const std::int64_t *sizes,
-                                             const std::int64_t *atoms, std::int64_t offset, const double *places,
+                                             const std::int64_t *atoms, std::int64_t offset, const double *coordinates,
                                              std::int64_t n_bonds, const std::int64_t *pairs, const double *lengths,
-                                             const rigid::LooseParts *parts) const {
+                                             const rigid::AffineParts *parts) const {
     if (!parts && rigid::share_atoms(n_bodies, sizes, atoms)) {
-        const rigid::JoinedBodies joined = rigid::join_bodies(n_bodies, sizes, atoms, places, n_bonds, pairs, lengths);
+        const rigid::JoinedBodies joined =
+            rigid::join_bodies(n_bodies, sizes, atoms, coordinates, n_bonds, pairs, lengths);
         return sort_rigid(static_cast<std::int64_t>(joined.sizes.size()), joined.sizes.data(), joined.atoms.data(),
-                          offset, joined.places.data(), n_bonds, pairs, lengths, &joined.parts);
+                          offset, joined.coordinates.data(), n_bonds, pairs, lengths, &joined.parts);
     }
-    return Sorting(*this, masses_, use_, n_bodies, sizes, atoms, offset, n_bonds, pairs, parts).sort(places, lengths);
+    return Sorting(*this, masses_, use_, n_bodies, sizes, atoms, offset, n_bonds, pairs, parts)
+        .sort(coordinates, lengths);
 }
 
 }  // namespace holonomic

@@ -13,13 +13,13 @@ namespace holonomic::rigid {
 
 class Spread {
 public:
-    explicit Spread(const Linear &linear) : linear_(linear), kept_(linear.parts().size()) {}
+    explicit Spread(const LinearParts &linear) : linear_(linear), kept_(linear.parts().size()) {}
 
     // Whether a distance is far from what those that have been added tell of its part; it is added then, or if
     // `always`.
     bool add(std::int64_t i, std::int64_t j, bool always) {
         constexpr double far = 0.1;
-        const Linear::Place *const a = linear_.find(i), *const b = linear_.find(j);
+        const LinearParts::Membership *const a = linear_.find(i), *const b = linear_.find(j);
         if (!a || !b || a->part != b->part) return true;
         std::vector<double> row = row_of(*a, *b);
         const double size = norm(row);
@@ -44,23 +44,23 @@ private:
         return std::sqrt(sum);
     }
     // Of each leader, its coefficient times the bond, with leaders anywhere.
-    std::vector<double> row_of(const Linear::Place &a, const Linear::Place &b) const {
+    std::vector<double> row_of(const LinearParts::Membership &a, const LinearParts::Membership &b) const {
         const Leaders &leaders = linear_.leaders()[a.part];
         const std::size_t n = leaders.atoms.size();
         std::vector<double> c(n), row(3 * n);
         double d[3] = {0, 0, 0};
         for (std::size_t l = 0; l < n; ++l) {
             c[l] = leaders.of[b.atom * n + l].hi - leaders.of[a.atom * n + l].hi;
-            for (std::size_t x = 0; x < 3; ++x) d[x] += c[l] * place(l, x);
+            for (std::size_t x = 0; x < 3; ++x) d[x] += c[l] * coordinates(l, x);
         }
         for (std::size_t e = 0; e < row.size(); ++e) row[e] = c[e / 3] * d[e % 3];
         return row;
     }
-    static double place(std::size_t leader, std::size_t x) {
+    static double coordinates(std::size_t leader, std::size_t x) {
         return std::ldexp(static_cast<double>(mix(mix(0x9e3779b97f4a7c15u, leader), x) >> 11), -53) - 0.5;
     }
 
-    const Linear &linear_;
+    const LinearParts &linear_;
     std::vector<std::vector<std::vector<double>>> kept_;  // of each part, orthonormal
 };
 

@@ -16,7 +16,7 @@ PairVector difference(const double *a, const double *b) {
 
 // Nearest image, without a rounding.
 PairVector image(const Box &box, PairVector d) {
-    if (box.shape == Box::none) return d;
+    if (box.lattice == Box::none) return d;
     const double v[3] = {d.x.hi, d.y.hi, d.z.hi};
     for (int i = 0; i < 3; ++i) {
         const double n = std::nearbyint(v[0] * box.inverse[i] + v[1] * box.inverse[3 + i] + v[2] * box.inverse[6 + i]);
@@ -32,10 +32,10 @@ double largest(const PairVector &v) {
     return std::max(std::max(std::fabs(v.x.hi), std::fabs(v.y.hi)), std::fabs(v.z.hi));
 }
 
-// Pieces of a block of memory, one after the other.
-class Pieces {
+// Carves arrays out of a block of memory, one after the other.
+class Carving {
 public:
-    explicit Pieces(char *memory) : next_(memory) {}
+    explicit Carving(char *memory) : next_(memory) {}
     template <class T>
     T *take(std::int64_t n) {
         T *const here = reinterpret_cast<T *>(next_);
@@ -48,7 +48,7 @@ private:
     char *next_;
 };
 
-struct Layout {
+struct SystemLayout {
     Conformation now, reference;
     PairVector *a, *b, *start;
     DoublePair *t, *c, *residual, *wide_x, *inverse;
@@ -58,46 +58,46 @@ struct Layout {
     std::int64_t bytes;
 };
 
-Layout lay_out(const Shape &s, char *memory) {
+SystemLayout lay_out(const MoleculeKind &s, char *memory) {
     const std::int64_t entries = static_cast<std::int64_t>(s.entries.size()),
                        fill = static_cast<std::int64_t>(s.row.size()),
                        bonds = static_cast<std::int64_t>(s.bonds.size()), rows = s.n_rows, nodes = s.n_nodes;
-    Pieces pieces(memory);
-    Layout m;
+    Carving carving(memory);
+    SystemLayout m;
     for (Conformation *which : {&m.now, &m.reference}) {
-        which->x = pieces.take<PairVector>(s.n_atoms);
-        which->q = pieces.take<PairVector>(nodes);
-        which->shift = pieces.take<PairVector>(bonds);
-        which->gradient = pieces.take<PairVector>(entries);
+        which->x = carving.take<PairVector>(s.n_atoms);
+        which->q = carving.take<PairVector>(nodes);
+        which->shift = carving.take<PairVector>(bonds);
+        which->gradient = carving.take<PairVector>(entries);
     }
-    m.a = pieces.take<PairVector>(nodes);
-    m.b = pieces.take<PairVector>(nodes);
-    m.start = pieces.take<PairVector>(nodes);
-    m.t = pieces.take<DoublePair>(rows);
-    m.c = pieces.take<DoublePair>(rows);
-    m.residual = pieces.take<DoublePair>(rows);
-    m.wide_x = pieces.take<DoublePair>(rows);
-    m.inverse = pieces.take<DoublePair>(fill);
-    m.wide = {pieces.take<DoublePair>(rows), pieces.take<DoublePair>(fill), pieces.take<DoublePair>(fill), nullptr};
-    m.plain = {pieces.take<double>(rows), pieces.take<double>(fill), pieces.take<double>(fill),
-               pieces.take<double>(rows)};
+    m.a = carving.take<PairVector>(nodes);
+    m.b = carving.take<PairVector>(nodes);
+    m.start = carving.take<PairVector>(nodes);
+    m.t = carving.take<DoublePair>(rows);
+    m.c = carving.take<DoublePair>(rows);
+    m.residual = carving.take<DoublePair>(rows);
+    m.wide_x = carving.take<DoublePair>(rows);
+    m.inverse = carving.take<DoublePair>(fill);
+    m.wide = {carving.take<DoublePair>(rows), carving.take<DoublePair>(fill), carving.take<DoublePair>(fill), nullptr};
+    m.plain = {carving.take<double>(rows), carving.take<double>(fill), carving.take<double>(fill),
+               carving.take<double>(rows)};
     m.wide.before = m.plain.before;
-    m.x = pieces.take<double>(rows);
-    m.raw = pieces.take<double>(3 * std::int64_t{s.n_atoms});
-    m.gradient[0] = pieces.take<double>(3 * entries);
-    m.gradient[1] = pieces.take<double>(3 * entries);
-    m.path = pieces.take<double>(3 * rows);
-    m.within = pieces.take<double>(s.by_lengths ? 3 * (bonds + 2 * std::int64_t{s.n_held}) : 0);
-    m.bytes = (pieces.used(memory) + 63) / 64 * 64;
+    m.x = carving.take<double>(rows);
+    m.raw = carving.take<double>(3 * std::int64_t{s.n_atoms});
+    m.gradient[0] = carving.take<double>(3 * entries);
+    m.gradient[1] = carving.take<double>(3 * entries);
+    m.path = carving.take<double>(3 * rows);
+    m.within = carving.take<double>(s.by_lengths ? 3 * (bonds + 2 * std::int64_t{s.n_held}) : 0);
+    m.bytes = (carving.used(memory) + 63) / 64 * 64;
     return m;
 }
 
 }  // namespace
 
-PairVector told_image(const Cell &box, const Place &place, std::size_t bond) {
+PairVector told_image(const Cell &box, const MoleculeView &view, std::size_t bond) {
     PairVector d = zero();
     for (int i = 0; i < 3; ++i) {
-        const double n = place.images[3 * place.bonds[bond] + i];
+        const double n = view.images[3 * view.bonds[bond] + i];
         d.x = d.x + n * as_pair(box.given[3 * i]);
         d.y = d.y + n * as_pair(box.given[3 * i + 1]);
         d.z = d.z + n * as_pair(box.given[3 * i + 2]);
@@ -105,13 +105,13 @@ PairVector told_image(const Cell &box, const Place &place, std::size_t bond) {
     return d;
 }
 
-std::int64_t System::bytes(const Shape &shape) {
+std::int64_t System::bytes(const MoleculeKind &kind) {
     alignas(64) static char nowhere[64];
-    return lay_out(shape, nowhere).bytes;
+    return lay_out(kind, nowhere).bytes;
 }
 
-System::System(const Shape &shape, const Body *bodies, char *memory) : s_(shape), bodies_(bodies) {
-    const Layout m = lay_out(shape, memory);
+System::System(const MoleculeKind &kind, const Body *bodies, char *memory) : s_(kind), bodies_(bodies) {
+    const SystemLayout m = lay_out(kind, memory);
     now = m.now;
     reference = m.reference;
     a = m.a;
@@ -132,8 +132,8 @@ System::System(const Shape &shape, const Body *bodies, char *memory) : s_(shape)
     path_ = m.path;
 }
 
-void System::read(const AtomArray &r, const Cell &box, const Place &place, const Conformation &to) const {
-    for (std::int32_t i = 0; i < s_.n_atoms; ++i) read_atom(r, place.atoms[i], raw + 3 * i);
+void System::read(const AtomArray &r, const Cell &box, const MoleculeView &view, const Conformation &to) const {
+    for (std::int32_t i = 0; i < s_.n_atoms; ++i) read_atom(r, view.atoms[i], raw + 3 * i);
     // A first atom that is not finite makes all of them so.
     to.x[0] = difference(raw, raw);
     for (const Step &step : s_.steps) {
@@ -153,9 +153,9 @@ void System::read(const AtomArray &r, const Cell &box, const Place &place, const
     for (std::size_t k = 0; k < s_.bonds.size(); ++k) {
         const Bond &bond = s_.bonds[k];
         to.shift[k] = zero();
-        if (box.shape == Box::none || bond.row < 0) continue;
+        if (box.lattice == Box::none || bond.row < 0) continue;
         if (s_.has_images) {
-            to.shift[k] = told_image(box, place, k);
+            to.shift[k] = told_image(box, view, k);
             continue;
         }
         const PairVector nearest = image(box, difference(raw + 3 * bond.j, raw + 3 * bond.i));
@@ -187,7 +187,7 @@ void System::differentiate(const Conformation &where) const {
     }
 }
 
-void System::velocities(const AtomArray &v, const Place &place, PairVector *nodes) const {
+void System::velocities(const AtomArray &v, const MoleculeView &view, PairVector *nodes) const {
     double x[3];
     for (const Part &part : s_.parts) {
         const Body &its = body(part);
@@ -196,45 +196,45 @@ void System::velocities(const AtomArray &v, const Place &place, PairVector *node
         const DoublePair *share = its.share.data();
         for (std::int32_t i = 0; i < its.n_atoms; ++i, share += 1 + its.rank) {
             if (!(its.masses[at(i)] > 0)) continue;
-            read_atom(v, place.atoms[part.first_atom + i], x);
+            read_atom(v, view.atoms[part.first_atom + i], x);
             const PairVector of_atom = {as_pair(x[0]), as_pair(x[1]), as_pair(x[2])};
             for (std::int32_t p = 0; p <= its.rank; ++p) q[p] = q[p] + share[p] * of_atom;
         }
     }
     for (std::int32_t i = s_.n_held; i < s_.n_atoms; ++i) {
-        read_atom(v, place.atoms[i], x);
+        read_atom(v, view.atoms[i], x);
         nodes[s_.node_of[at(i)]] = {as_pair(x[0]), as_pair(x[1]), as_pair(x[2])};
     }
 }
 
-void System::forces(const Conformation &where, const AtomArray &f, const Place &place, PairVector *nodes) const {
+void System::forces(const Conformation &where, const AtomArray &f, const MoleculeView &view, PairVector *nodes) const {
     double x[3];
     for (const Part &part : s_.parts) {
         const Body &its = body(part);
         PairVector *const q = nodes + part.first_node;
         for (std::int32_t p = 0; p <= its.rank; ++p) q[p] = zero();
         for (std::int32_t i = 0; i < its.n_atoms; ++i) {
-            read_atom(f, place.atoms[part.first_atom + i], x);
+            read_atom(f, view.atoms[part.first_atom + i], x);
             const PairVector of_atom = {as_pair(x[0]), as_pair(x[1]), as_pair(x[2])};
             q[0] = q[0] + (its.first.empty() ? of_atom : its.first[at(i)] * of_atom);
             for (std::int32_t p = 0; p < its.rank; ++p) q[1 + p] = q[1 + p] + its.y[at(i * its.rank + p)] * of_atom;
         }
-        if (!its.z.empty()) carry_to_axes(where, part, lifted_force(part, f, place), nodes);
+        if (!its.z.empty()) carry_to_axes(where, part, lifted_force(part, f, view), nodes);
     }
     for (std::int32_t i = s_.n_held; i < s_.n_atoms; ++i) {
-        if (i < s_.n_movable) read_atom(f, place.atoms[i], x);
+        if (i < s_.n_movable) read_atom(f, view.atoms[i], x);
         nodes[s_.node_of[at(i)]] = i < s_.n_movable ? PairVector{as_pair(x[0]), as_pair(x[1]), as_pair(x[2])} : zero();
     }
 }
 
 // The virtual work of forces where a fixed atom is shifted; that of the accelerations is 0.
-void System::pass_to_fixed(const AtomArray &f, const Place &place, PairVector *nodes) const {
+void System::pass_to_fixed(const AtomArray &f, const MoleculeView &view, PairVector *nodes) const {
     for (const Part &part : s_.parts) {
         const Body &its = body(part);
         const std::size_t n_fixed = part.fixed.size();
         for (std::int32_t i = 0; n_fixed > 0 && i < its.n_atoms; ++i) {
             double x[3];
-            read_atom(f, place.atoms[part.first_atom + i], x);
+            read_atom(f, view.atoms[part.first_atom + i], x);
             const PairVector of_atom = {as_pair(x[0]), as_pair(x[1]), as_pair(x[2])};
             for (std::size_t j = 0; j < n_fixed; ++j) {
                 PairVector &node = nodes[s_.node_of[at(part.fixed[j])]];

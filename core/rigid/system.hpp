@@ -18,7 +18,7 @@ namespace holonomic::rigid {
 enum class Outcome { good, not_finite, degenerate, no_convergence, stretched };
 
 // Where the caller has the atoms of a molecule.
-struct Place {
+struct MoleculeView {
     const std::int64_t *atoms;
     const std::int64_t *bonds;
     std::int64_t number;         // of the molecule
@@ -27,36 +27,36 @@ struct Place {
 
 // Where a molecule is at an instant.
 struct Conformation {
-    PairVector *x;         // [n_atoms] from the first atom, images taken; places of sites are read like the others
+    PairVector *x;         // [n_atoms] from the first atom, images taken; coordinates of sites are read like the others
     PairVector *q;         // [n_nodes]
     PairVector *shift;     // [n_bonds] by which a bond reaches another image than the way through the molecule
     PairVector *gradient;  // [entries]
 };
 
 // The lattice vector that is told of a bond.
-PairVector told_image(const Cell &box, const Place &place, std::size_t bond);
+PairVector told_image(const Cell &box, const MoleculeView &view, std::size_t bond);
 
 class System {
 public:
-    static std::int64_t bytes(const Shape &shape);
-    // memory: bytes(shape)
-    System(const Shape &shape, const Body *bodies, char *memory);
+    static std::int64_t bytes(const MoleculeKind &kind);
+    // memory: bytes(kind)
+    System(const MoleculeKind &kind, const Body *bodies, char *memory);
 
     // Nodes and gradients.
-    void read(const AtomArray &r, const Cell &box, const Place &place, const Conformation &to) const;
+    void read(const AtomArray &r, const Cell &box, const MoleculeView &view, const Conformation &to) const;
     void differentiate(const Conformation &at) const;
     // Nodes of a vector per atom, by masses: velocities. What sites have is not looked at.
-    void velocities(const AtomArray &v, const Place &place, PairVector *nodes) const;
+    void velocities(const AtomArray &v, const MoleculeView &view, PairVector *nodes) const;
     // Nodes of forces, on the centre and the u_p; sites' too, where the molecule is.
-    void forces(const Conformation &at, const AtomArray &f, const Place &place, PairVector *nodes) const;
+    void forces(const Conformation &at, const AtomArray &f, const MoleculeView &view, PairVector *nodes) const;
     // Adds to the nodes of fixed atoms what relations pass on to them.
-    void pass_to_fixed(const AtomArray &f, const Place &place, PairVector *nodes) const;
+    void pass_to_fixed(const AtomArray &f, const MoleculeView &view, PairVector *nodes) const;
     // What a vector per node is at an atom; not at sites off the plane of a body, for which the next two are.
     PairVector at_atom(const PairVector *nodes, std::int32_t atom) const;
-    PairVector place_of(const Conformation &at, std::int32_t atom) const;
+    PairVector position_of(const Conformation &at, std::int32_t atom) const;
     // v: velocities of the nodes.
     PairVector velocity_of(const Conformation &at, const PairVector *v, const BoxRate *rate, std::int32_t atom) const;
-    // d of a bond, between the nodes' places.
+    // d of a bond, between positions of nodes.
     PairVector bond_vector(const Conformation &at, std::int32_t bond) const;
 
     // The same of a row, which is of a distance.
@@ -78,13 +78,14 @@ public:
     // xx xy xz yy yz zz of the sum of q (x) pull.
     void add_virial(const Conformation &at, const DoublePair *t, double factor, double *virial) const;
     // Of carrying the forces of sites off the plane of a body to its masses.
-    void add_virial_of_sites(const Conformation &at, const AtomArray &f, const Place &place, double *virial) const;
+    void add_virial_of_sites(const Conformation &at, const AtomArray &f, const MoleculeView &view,
+                             double *virial) const;
 
     // ln det of Z scaled to ones on its diagonal, of Z, and the gradient of the first per node; of rows that are bonds.
     // The reference's gradients are scratch.
     Outcome metric(const Conformation &at, double *log_det, double *log_det_z, PairVector *slope) const;
 
-    const Shape &shape() const { return s_; }
+    const MoleculeKind &kind() const { return s_; }
     const Body &body(const Part &part) const { return bodies_[part.body]; }
 
     Conformation now, reference;
@@ -95,7 +96,7 @@ public:
 
 private:
     // The sum of z f over sites off the plane of a part.
-    PairVector lifted_force(const Part &part, const AtomArray &f, const Place &place) const;
+    PairVector lifted_force(const Part &part, const AtomArray &f, const MoleculeView &view) const;
     void carry_to_axes(const Conformation &at, const Part &part, const PairVector &lifted, PairVector *nodes) const;
 
     template <class T>
@@ -108,7 +109,7 @@ private:
     Outcome restore_with(const Factor<T> &f, T *x, const Conformation &reference, const Conformation &now,
                          double tolerance, int most_iterations, DoublePair *t, int *iterations, double *error) const;
 
-    const Shape &s_;
+    const MoleculeKind &s_;
     const Body *const bodies_;
     Factor<double> plain_;
     Factor<DoublePair> wide_;

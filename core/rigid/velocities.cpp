@@ -5,13 +5,14 @@
 #include "core/rigid/run.hpp"
 #include "core/rigid/verbs.hpp"
 #include "core/rigid/within.hpp"
+#include "core/run/execute.hpp"
 #include "core/run/kernel_choice.hpp"
 
 namespace holonomic::rigid {
 
 namespace {
 
-struct VelocitiesWork final : Work {
+struct BodyVelocities final : BodyWork {
     AtomArray r, v;
     const Cell &box;
     const BoxRate *rate;
@@ -19,7 +20,7 @@ struct VelocitiesWork final : Work {
     bool virial;
     VelocitiesCall call;
 
-    VelocitiesWork(const Chains &chains, const AtomArray &r_, const AtomArray &v_, double *lambda_, bool virial_)
+    BodyVelocities(const Chains &chains, const AtomArray &r_, const AtomArray &v_, double *lambda_, bool virial_)
         : r(r_), v(v_), box(chains.box), rate(chains.box_rate()), lambda(lambda_),
           virial(virial_), call{r_, v_, nullptr, virial_, nullptr, {}} {
         put_box(box, call.box);
@@ -33,9 +34,9 @@ struct VelocitiesWork final : Work {
         for (int i = 0; i < 6; ++i) tally.virial[i] += result.virial[i];
     }
 
-    Outcome molecule(const System &system, const Place &place, Tally &tally) const override {
-        const Shape &s = system.shape();
-        system.read(r, box, place, system.now);
+    Outcome molecule(const System &system, const MoleculeView &view, Tally &tally) const override {
+        const MoleculeKind &s = system.kind();
+        system.read(r, box, view, system.now);
         system.differentiate(system.now);
         if (rate)
             for_rates(system, nullptr, rate,
@@ -43,7 +44,7 @@ struct VelocitiesWork final : Work {
                           const PairVector &u,
                           const PairVector &w) { system.c[row] = square ? dot(p, u) : dot(p, w) + dot(q, u); });
         PairVector *const z = system.a;
-        system.velocities(v, place, z);
+        system.velocities(v, view, z);
         const Outcome outcome = system.project(system.now, rate ? system.c : nullptr, z, system.t);
         if (outcome != Outcome::good) return outcome;
         double sum = 0;
@@ -53,25 +54,24 @@ struct VelocitiesWork final : Work {
             sum += std::fabs(of_atom.x) + std::fabs(of_atom.y) + std::fabs(of_atom.z) + x.x + x.y + x.z;
         }
         if (!std::isfinite(sum)) return Outcome::not_finite;
-        if (s.by_lengths && lambda) share(system, place, z);
+        if (s.by_lengths && lambda) share(system, view, z);
         for (std::int32_t i = 0; i < s.n_movable; ++i) {
             const Vector3<double> of_atom = rounded(system.velocity_of(system.now, z, rate, i));
             const double x[3] = {of_atom.x, of_atom.y, of_atom.z};
-            write_atom(v, place.atoms[i], x);
+            write_atom(v, view.atoms[i], x);
         }
-        for (std::size_t k = 0; lambda && k < s.bonds.size(); ++k)
-            lambda[place.bonds[k]] = multiplier_of(system, k) / 2;
+        for (std::size_t k = 0; lambda && k < s.bonds.size(); ++k) lambda[view.bonds[k]] = multiplier_of(system, k) / 2;
         if (virial) system.add_virial(system.now, system.t, 1, tally.virial);
         return outcome;
     }
 
     // The change of momenta.
-    void share(const System &system, const Place &place, const PairVector *z) const {
-        const Shape &s = system.shape();
+    void share(const System &system, const MoleculeView &view, const PairVector *z) const {
+        const MoleculeKind &s = system.kind();
         double *force = force_within(system);
         for (std::int32_t i = 0; i < s.n_held; ++i) {
             double x[3];
-            read_atom(v, place.atoms[i], x);
+            read_atom(v, view.atoms[i], x);
             const PairVector before = {as_pair(x[0]), as_pair(x[1]), as_pair(x[2])};
             const Vector3<double> impulse = rounded(s.mass[at(i)] * (system.at_atom(z, i) - before));
             *force++ = impulse.x, *force++ = impulse.y, *force++ = impulse.z;
@@ -83,13 +83,12 @@ struct VelocitiesWork final : Work {
 }  // namespace
 
 void project_velocities(const Chains &chains, const AtomArray &r, const AtomArray &v, double *lambda, double *virial) {
-    const Found found = run(chains, VelocitiesWork(chains, r, v, lambda, virial != nullptr));
+    const RunResult found = run(chains, BodyVelocities(chains, r, v, lambda, virial != nullptr));
     if (found.tally.n_bad > 0) {
         const Named arrays[] = {{"position", &r}, {"velocity", &v}};
         throw error_of(chains, found, arrays, 2);
     }
-    const int place[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
-    for (int i = 0; virial && i < 9; ++i) virial[i] += found.tally.virial[place[i]];
+    if (virial) add_virial(found.tally, virial);
 }
 
 }  // namespace holonomic::rigid

@@ -1,4 +1,4 @@
-// How far molecules with bodies are from their constraints. Of a body: how far its atoms are from their places in it,
+// How far molecules with bodies are from their constraints. Of a body: how far its atoms are from where it has them,
 // and its axes from their lengths and right angles, relative to its size; it has no bond to name.
 #include <algorithm>
 #include <cmath>
@@ -24,7 +24,7 @@ double size_of(const PairVector &a) {
 // Whether a face of the box cuts a molecule, as it has been read: an atom was put into another image.
 bool is_cut(const System &system) {
     double straight = 0, moved = 0;
-    for (std::int32_t i = 1; i < system.shape().n_atoms; ++i) {
+    for (std::int32_t i = 1; i < system.kind().n_atoms; ++i) {
         const Vector3<double> x = rounded(system.now.x[i]);
         const double at_once[3] = {x.x, x.y, x.z};
         for (int c = 0; c < 3; ++c) {
@@ -56,22 +56,22 @@ public:
         if (!memory_) throw std::bad_alloc();
     }
 
-    // Calls each(system, place) for the active molecules, positions read.
+    // Calls each(system, view) for the active molecules, positions read.
     template <class Each>
     void for_each(const AtomArray &r, const Cell &box, const Each &each) const {
         for (std::int64_t m = 0; m < bodies_.n_molecules(); ++m) {
             if (!bodies_.is_active(m)) continue;
-            const System system(bodies_.shape(m), bodies_.kinds(), memory_);
-            const Place place{bodies_.atoms(m), bodies_.bonds(m), chains_.n_chains() + m, chains_.images()};
-            system.read(r, box, place, system.now);
-            each(system, place);
+            const System system(bodies_.kind(m), bodies_.body_kinds(), memory_);
+            const MoleculeView view{bodies_.atoms(m), bodies_.bonds(m), chains_.n_chains() + m, chains_.images()};
+            system.read(r, box, view, system.now);
+            each(system, view);
         }
     }
 
     // Calls each(error, bond within the molecule or -1, atom or -1); the error is that of squares of lengths.
     template <class Each>
-    static void lengths(const System &system, const Place &place, const Each &each) {
-        const Shape &s = system.shape();
+    static void lengths(const System &system, const MoleculeView &view, const Each &each) {
+        const MoleculeKind &s = system.kind();
         for (std::size_t k = 0; k < s.bonds.size(); ++k) {
             if (s.bonds[k].row < 0) continue;
             const double a = s.bonds[k].length,
@@ -81,7 +81,7 @@ public:
         for (std::int32_t k = 0; !s.hidden.empty() && k < s.n_rows; ++k) {
             if (s.bond_of_row[at(k)] >= 0 || !s.is_distance(k)) continue;
             const PairVector d = system.distance(system.now, k);
-            each(std::fabs(rounded(dot(d, d) - s.target[at(k)])) / s.scale[at(k)], std::int64_t{-1}, place.atoms[0]);
+            each(std::fabs(rounded(dot(d, d) - s.target[at(k)])) / s.scale[at(k)], std::int64_t{-1}, view.atoms[0]);
         }
         for (const Part &part : s.parts) {
             const Body &body = system.body(part);
@@ -89,19 +89,19 @@ public:
             for (std::int32_t p = 0; body.is_rigid && p < body.rank; ++p)
                 for (std::int32_t q = p; q < body.rank; ++q) {
                     const DoublePair off = dot(u[p], u[q]) - (p == q ? body.square[p] : as_pair(0));
-                    each(std::fabs(off.hi) / body.square[0].hi, std::int64_t{-1}, place.atoms[part.first_atom]);
+                    each(std::fabs(off.hi) / body.square[0].hi, std::int64_t{-1}, view.atoms[part.first_atom]);
                 }
             for (std::int32_t i = part.first_atom; i < part.first_atom + body.n_atoms; ++i)
-                each(2 * size_of(system.place_of(system.now, i) - system.now.x[i]) / body.extent, std::int64_t{-1},
-                     place.atoms[i]);
+                each(2 * size_of(system.position_of(system.now, i) - system.now.x[i]) / body.extent, std::int64_t{-1},
+                     view.atoms[i]);
         }
     }
 
     template <class Each>
-    static void rates(const System &system, const Place &place, const AtomArray &v, const BoxRate *rate,
+    static void rates(const System &system, const MoleculeView &view, const AtomArray &v, const BoxRate *rate,
                       const Each &each) {
-        const Shape &s = system.shape();
-        system.velocities(v, place, system.b);
+        const MoleculeKind &s = system.kind();
+        system.velocities(v, view, system.b);
         for_rates(system, system.b, rate,
                   [&](std::int32_t, std::int32_t bond, bool square, const PairVector &p, const PairVector &q,
                       const PairVector &u, const PairVector &w) {
@@ -109,7 +109,7 @@ public:
                   });
         for (std::int32_t i = 0; i < s.n_held; ++i) {
             double x[3];
-            read_atom(v, place.atoms[i], x);
+            read_atom(v, view.atoms[i], x);
             const PairVector of_atom = {as_pair(x[0]), as_pair(x[1]), as_pair(x[2])};
             each(size_of(system.velocity_of(system.now, system.b, rate, i) - of_atom) *
                      system.body(s.parts[at(s.part_of[at(i)])]).extent,
@@ -144,15 +144,15 @@ void check_reference(const Chains &chains, const AtomArray &r, const Cell &box, 
     if (!chains.bodies()) return;
     Worst1 worst, cut, inside;
     std::int64_t n_inside = 0;
-    Measure(chains).for_each(r, box, [&](const System &system, const Place &place) {
-        const bool its_cut = box.shape != Box::none && is_cut(system);
+    Measure(chains).for_each(r, box, [&](const System &system, const MoleculeView &view) {
+        const bool its_cut = box.lattice != Box::none && is_cut(system);
         n_inside += !its_cut;
-        Measure::lengths(system, place, [&](double error, std::int64_t bond, std::int64_t atom) {
-            if (std::isfinite(error)) (its_cut ? cut : inside).take(error, place.number, bond, atom);
+        Measure::lengths(system, view, [&](double error, std::int64_t bond, std::int64_t atom) {
+            if (std::isfinite(error)) (its_cut ? cut : inside).take(error, view.number, bond, atom);
             // off by a tenth of the length: its square by a fifth
             if (!std::isfinite(error) || !(error > 2 * most_off)) return;
-            worst.take(error, place.number, bond, atom);
-            note_status(place.number, Status::lengths);
+            worst.take(error, view.number, bond, atom);
+            note_status(view.number, Status::lengths);
         });
     });
     // errors of squares are twice those of lengths
@@ -164,7 +164,7 @@ void check_reference(const Chains &chains, const AtomArray &r, const Cell &box, 
     const auto name = [&](std::int64_t atom) { return chains.name_of_atom(atom); };
     Error error;
     if (worst.bond >= 0) {
-        const Bond &bond = chains.bodies()->shape(m).bonds[at(worst.bond)];
+        const Bond &bond = chains.bodies()->kind(m).bonds[at(worst.bond)];
         error = make_error(Status::lengths,
                            "molecule %s, its bond between atoms %s and %s: far from its length, %.6g, %s; %s",
                            chains.name_of_rigid(worst.molecule, atoms[0]).text, name(atoms[bond.i]).text,
@@ -188,9 +188,9 @@ void check_reference(const Chains &chains, const AtomArray &r, const Cell &box, 
 void worst_length(const Chains &chains, const AtomArray &r, const Cell &box, WorstLength *worst) {
     if (!chains.bodies()) return;
     Worst1 found;
-    Measure(chains).for_each(r, box, [&](const System &system, const Place &place) {
-        Measure::lengths(system, place, [&](double error, std::int64_t bond, std::int64_t) {
-            found.take(error, place.number, bond, -1);
+    Measure(chains).for_each(r, box, [&](const System &system, const MoleculeView &view) {
+        Measure::lengths(system, view, [&](double error, std::int64_t bond, std::int64_t) {
+            found.take(error, view.number, bond, -1);
         });
     });
     if (found.molecule < 0 || (worst->molecule >= 0 && !(found.error > worst->error))) return;
@@ -199,19 +199,19 @@ void worst_length(const Chains &chains, const AtomArray &r, const Cell &box, Wor
 
 void violation(const Chains &chains, const AtomArray &r, const AtomArray &v, Worst *worst) {
     Worst1 length, rate;
-    Found bad{empty_tally(), Outcome::not_finite};
-    Measure(chains).for_each(r, chains.box, [&](const System &system, const Place &place) {
+    RunResult bad{empty_tally(), Outcome::not_finite};
+    Measure(chains).for_each(r, chains.box, [&](const System &system, const MoleculeView &view) {
         bool finite = true;
-        Measure::lengths(system, place, [&](double error, std::int64_t bond, std::int64_t) {
+        Measure::lengths(system, view, [&](double error, std::int64_t bond, std::int64_t) {
             finite = finite && std::isfinite(error);
-            length.take(error, place.number, bond, -1);
+            length.take(error, view.number, bond, -1);
         });
         if (v.x)
-            Measure::rates(system, place, v, chains.box_rate(), [&](double error, std::int64_t bond) {
+            Measure::rates(system, view, v, chains.box_rate(), [&](double error, std::int64_t bond) {
                 finite = finite && std::isfinite(error);
-                rate.take(error, place.number, bond, -1);
+                rate.take(error, view.number, bond, -1);
             });
-        if (!finite) note_bad(place.number, bad.tally);
+        if (!finite) note_bad(view.number, bad.tally);
     });
     if (bad.tally.n_bad > 0) {
         const Named arrays[] = {{"position", &r}, {"velocity", &v}};

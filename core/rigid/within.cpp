@@ -20,7 +20,7 @@ void add_pull(double *force, const Bond &bond, double t, const Vector3<double> &
 class Sharing {
 public:
     Sharing(const System &system, const Conformation &where)
-        : system_(system), s_(system.shape()), where_(where), n_bonds_(s_.bonds.size()), t_(system.within),
+        : system_(system), s_(system.kind()), where_(where), n_bonds_(s_.bonds.size()), t_(system.within),
           force_(force_within(system)), along_(force_ + 3 * std::ptrdiff_t{s_.n_held}), slope_(t_ + n_bonds_),
           direction_(slope_ + n_bonds_) {}
 
@@ -73,7 +73,7 @@ private:
     }
 
     const System &system_;
-    const Shape &s_;
+    const MoleculeKind &s_;
     const Conformation &where_;
     const std::size_t n_bonds_;
     double *const t_, *const force_, *const along_, *const slope_, *const direction_;
@@ -82,7 +82,7 @@ private:
 }  // namespace
 
 void share_within(const System &system, const Conformation &where) {
-    const Shape &s = system.shape();
+    const MoleculeKind &s = system.kind();
     double *const force = force_within(system);
     for (std::size_t k = 0; k < s.bonds.size(); ++k) {
         const Bond &bond = s.bonds[k];

@@ -25,6 +25,6 @@ double length_of_bond(const Molecule &m, std::int64_t k, const AtomArray &r, con
     return std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
 }
 
-const char *box_in_words(const Box &box) { return box.shape == Box::none ? "no box is set" : "a box is set"; }
+const char *box_in_words(const Box &box) { return box.lattice == Box::none ? "no box is set" : "a box is set"; }
 
 }  // namespace holonomic

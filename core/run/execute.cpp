@@ -6,8 +6,8 @@
 #include <new>
 
 #include "core/error.hpp"
-#include "core/kernels/molecules/tree_batch/batch.hpp"
 #include "core/molecules/planned/way.hpp"
+#include "core/plan/tree_batch.hpp"
 #include "core/run/lane.hpp"
 #include "core/run/outcomes.hpp"
 #include "core/run/thread_memory.hpp"
@@ -59,13 +59,13 @@ void share(int n_threads, std::int64_t scratch_bytes, std::int64_t store_bytes, 
     });
 }
 
-// A single molecule whose pieces are shared among the threads: a large one, or one of few, so that not every thread has
+// A single molecule whose tiles are shared among the threads: a large one, or one of few, so that not every thread has
 // molecules of its own, or that is more than a thread's part of all bonds.
 bool is_shared_molecule(const Plan &plan, std::int64_t p, int n_threads, bool paths) {
     const Plan::Chunk &chunk = plan.chunks[static_cast<std::size_t>(p)];
     if (chunk.shape == linear || chunk.count != 1) return false;
     const EliminationPlan &s = *plan.elimination_plans[static_cast<std::size_t>(chunk.shape)];
-    const std::int64_t n = s.n_pieces, n_molecules = static_cast<std::int64_t>(plan.chunks.size());
+    const std::int64_t n = s.n_tiles, n_molecules = static_cast<std::int64_t>(plan.chunks.size());
     const bool large = n_molecules < n_threads || static_cast<std::int64_t>(s.n_bonds) * n_threads > plan.n_bonds;
     if (large && has_shares(s, paths)) return true;
     return n > 1 && (n >= 8 * n_threads || n_molecules < 4 * n_threads);
@@ -356,8 +356,13 @@ void write_virial(const double *sum, double *virial) {
 
 void write_virial(const Tally &tally, double *virial) {
     refuse_infinite_virial<6>(tally.virial);
-    const int place[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
-    for (int i = 0; i < 9; ++i) virial[i] = tally.virial[place[i]];
+    std::fill(virial, virial + 9, 0.0);
+    add_virial(tally, virial);
+}
+
+void add_virial(const Tally &tally, double *virial) {
+    constexpr int sum_of_element[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
+    for (int i = 0; i < 9; ++i) virial[i] += tally.virial[sum_of_element[i]];
 }
 
 void execute(const Chains &chains, const Plan &plan, const Work &work, Tally &tally) {

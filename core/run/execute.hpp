@@ -74,6 +74,8 @@ protected:
 // The six sums of a tally as a symmetric [3][3]; or a sum [9]. Throws Error if one has overflowed.
 void write_virial(const Tally &tally, double *virial);
 void write_virial(const double *sum, double *virial);
+// The same, added and not looked at.
+void add_virial(const Tally &tally, double *virial);
 
 // Throws std::bad_alloc.
 inline double *scratch_of_this_thread(std::int64_t bytes) {

@@ -39,12 +39,12 @@ HOLONOMIC_TEST_SETS(HOLONOMIC_DECLARE)
 
 namespace {
 
-struct Sets {
+struct KernelSets {
     const Kernels *best = nullptr, *one_lane = nullptr;  // the latter has chains that fit into lanes alone
     const Kernels *forced = nullptr;
     const char *const wanted = std::getenv("HOLONOMIC_ISA");
 
-    Sets() {
+    KernelSets() {
 #if defined(__x86_64__) || defined(__i386__)
         __builtin_cpu_init();  // the library may be called before the compiler's own constructor has run
 #endif
@@ -73,7 +73,7 @@ struct Sets {
 }  // namespace
 
 KernelChoice choose_kernels() {
-    const Sets sets;
+    const KernelSets sets;
     if (!sets.best) {  // only where the baseline was left out: no call can have a result
         std::fputs("holonomic: built without the baseline, and no other kernels of it run on this processor\n", stderr);
         std::abort();
@@ -86,7 +86,7 @@ const char *name_of_kernels() { return kernel_choice().chains.name; }
 
 int64_t scratch_bytes(int64_t n_bonds) {
     const Kernels &widest = kernels();
-    return n_bonds > longest_lane ? widest.piece_bytes : widest.scratch_bytes(n_bonds);
+    return n_bonds > longest_lane ? widest.cut_bytes : widest.scratch_bytes(n_bonds);
 }
 
 }  // namespace holonomic

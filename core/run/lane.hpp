@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "core/kernels/call.hpp"
-#include "core/kernels/molecules/elimination_plan.hpp"
+#include "core/plan/elimination.hpp"
 
 namespace holonomic {
 

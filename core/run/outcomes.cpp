@@ -9,25 +9,25 @@ namespace holonomic {
 
 namespace {
 
-struct Kept {
+struct KeptOutcomes {
     OutcomeOf *outcomes;
     const Chains *under_way, *complete;  // null: none
     std::int64_t n;
 };
-thread_local Kept kept{};
+thread_local KeptOutcomes kept{};
 
 }  // namespace
 
 OutcomeOf *outcomes_under_way() { return kept.under_way ? kept.outcomes : nullptr; }
 
 void begin_outcomes(const Chains &chains) {
-    kept = Kept{};
+    kept = KeptOutcomes{};
     const std::int64_t n = chains.n_molecules(), bytes = n * static_cast<std::int64_t>(sizeof(OutcomeOf));
     OutcomeOf *const outcomes =
         static_cast<OutcomeOf *>(thread_memory(Keep::outcomes, std::max<std::int64_t>(bytes, 1)));
     if (!outcomes) throw std::bad_alloc();
     std::fill(outcomes, outcomes + n, OutcomeOf{0, 0});
-    kept = Kept{outcomes, &chains, nullptr, n};
+    kept = KeptOutcomes{outcomes, &chains, nullptr, n};
 }
 
 void end_outcomes(bool complete) {

@@ -241,8 +241,8 @@ bool find_units(const KernelMolecule &m, const SolveCall &call, Powers &units) {
 
 Box rescaled(const Box &box, int e) {
     Box copy{};
-    copy.shape = box.shape;
-    if (box.shape == Box::none) return copy;
+    copy.lattice = box.lattice;
+    if (box.lattice == Box::none) return copy;
     for (int i = 0; i < 9; ++i) {
         copy.h[i] = std::scalbn(box.h[i], -e);
         copy.inverse[i] = std::scalbn(box.inverse[i], e);

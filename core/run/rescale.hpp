@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "core/kernels/molecules/elimination_plan.hpp"
 #include "core/kernels/tally.hpp"
 #include "core/molecules/given/ordinary.hpp"
+#include "core/plan/elimination.hpp"
 
 namespace holonomic {
 

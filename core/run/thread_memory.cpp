@@ -20,13 +20,13 @@ namespace {
 // What is kept of a chain of a million bonds is gone through as a whole: fewer pages to look up.
 constexpr std::int64_t large_page = 2097152;
 
-struct Block {
+struct Allocation {
     void *data;
     std::int64_t bytes;
 };
 
-struct Blocks {
-    Block of[static_cast<int>(Keep::last)];
+struct Allocations {
+    Allocation of[static_cast<int>(Keep::last)];
     bool kept;  // whether the end of the thread will free them
 };
 
@@ -40,28 +40,28 @@ void give_back(void *data) { std::free(data); }
 #endif
 
 void release(void *p) {
-    Blocks &blocks = *static_cast<Blocks *>(p);
-    for (Block &block : blocks.of) {
-        give_back(block.data);
-        block = Block{nullptr, 0};
+    Allocations &allocations = *static_cast<Allocations *>(p);
+    for (Allocation &allocation : allocations.of) {
+        give_back(allocation.data);
+        allocation = Allocation{nullptr, 0};
     }
-    blocks.kept = false;
+    allocations.kept = false;
 }
 
 #if defined(_WIN32)
 
-struct OwnedBlocks : Blocks {
-    OwnedBlocks() : Blocks{} {}
-    ~OwnedBlocks() { release(this); }
+struct OwnedAllocations : Allocations {
+    OwnedAllocations() : Allocations{} {}
+    ~OwnedAllocations() { release(this); }
 };
-thread_local OwnedBlocks blocks_of_this_thread;
+thread_local OwnedAllocations allocations_of_this_thread;
 
-bool keep(Blocks &) { return true; }
+bool keep(Allocations &) { return true; }
 
 #else
 
 // Not an object with a destructor: to register one, the run-time library allocates, and ends the process if it can't.
-thread_local Blocks blocks_of_this_thread;
+thread_local Allocations allocations_of_this_thread;
 
 struct Key {
     pthread_key_t key;
@@ -69,39 +69,40 @@ struct Key {
     Key() : made(pthread_key_create(&key, release) == 0) {}
 };
 
-// Has the end of the thread free its blocks. The library stays loaded (-z nodelete), so that `release` is still there.
-bool keep(Blocks &blocks) {
+// Has the end of the thread free its allocations. The library stays loaded (-z nodelete), so that `release` is still
+// there.
+bool keep(Allocations &allocations) {
     static const Key end_of_thread;
-    return end_of_thread.made && pthread_setspecific(end_of_thread.key, &blocks) == 0;
+    return end_of_thread.made && pthread_setspecific(end_of_thread.key, &allocations) == 0;
 }
 
 #endif
 
 // Apart from the look, which every call takes.
-[[gnu::noinline]] void *grow(Blocks &blocks, Block &block, std::int64_t bytes) noexcept {
-    if (!blocks.kept) {
-        if (!keep(blocks)) return nullptr;
-        blocks.kept = true;
+[[gnu::noinline]] void *grow(Allocations &allocations, Allocation &allocation, std::int64_t bytes) noexcept {
+    if (!allocations.kept) {
+        if (!keep(allocations)) return nullptr;
+        allocations.kept = true;
     }
-    give_back(block.data);
-    block = Block{nullptr, 0};
+    give_back(allocation.data);
+    allocation = Allocation{nullptr, 0};
     const bool large = bytes >= 4 * large_page;
     const std::size_t alignment = large ? static_cast<std::size_t>(large_page) : sizeof(double) * most_lanes;
     const std::size_t rounded = (static_cast<std::size_t>(bytes) + alignment - 1) / alignment * alignment;
-    block.data = aligned(alignment, rounded);
+    allocation.data = aligned(alignment, rounded);
 #ifdef MADV_HUGEPAGE
-    if (large && block.data) static_cast<void>(madvise(block.data, rounded, MADV_HUGEPAGE));  // a wish
+    if (large && allocation.data) static_cast<void>(madvise(allocation.data, rounded, MADV_HUGEPAGE));  // a wish
 #endif
-    if (block.data) block.bytes = static_cast<std::int64_t>(rounded);
-    return block.data;
+    if (allocation.data) allocation.bytes = static_cast<std::int64_t>(rounded);
+    return allocation.data;
 }
 
 }  // namespace
 
 void *thread_memory(Keep what, std::int64_t bytes) noexcept {
-    Blocks &blocks = blocks_of_this_thread;
-    Block &block = blocks.of[static_cast<int>(what)];
-    return bytes <= block.bytes ? block.data : grow(blocks, block, bytes);
+    Allocations &allocations = allocations_of_this_thread;
+    Allocation &allocation = allocations.of[static_cast<int>(what)];
+    return bytes <= allocation.bytes ? allocation.data : grow(allocations, allocation, bytes);
 }
 
 }  // namespace holonomic

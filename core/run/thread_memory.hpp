@@ -10,7 +10,7 @@ enum class Keep {
     store,
     chunk_tallies,
     block_tallies,
-    apart,
+    staging,
     right_hand_sides,
     multipliers,
     reference,

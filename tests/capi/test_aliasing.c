@@ -97,8 +97,8 @@ static void check(const mixture *m)
     }
 }
 
-/** Alone, with others like it, and among other atoms; of large molecules one other is enough. Under slow tools those like
- * it are left out, and large molecules are among other atoms only. */
+/** Alone, with others like it, and among other atoms; of large molecules one other is enough. Under slow tools those
+ * like it are left out, and large molecules are among other atoms only. */
 static void check_molecule(molecule m)
 {
     molecule parts[5] = {m, m, m, m, m};

@@ -28,7 +28,7 @@ struct planned {
         memory.assign(size + 16, 12345.0);
         double *const first = memory.data() + (8 - reinterpret_cast<std::uintptr_t>(memory.data()) / 8 % 8) % 8;
         canary = first + size;
-        holonomic::HOL_ISA::extended::Memory left = {reinterpret_cast<char *>(first)};
+        holonomic::HOL_ISA::extended::ByteArena left = {reinterpret_cast<char *>(first)};
         plan = holonomic::HOL_ISA::extended::plan_of(*elimination, left);
         scratch = reinterpret_cast<double *>(left.next);
         const std::ptrdiff_t taken = left.next - reinterpret_cast<char *>(first);

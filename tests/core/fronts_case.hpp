@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/kernels/molecules/network/plan.hpp"
+#include "core/plan/network.hpp"
 
 namespace fronts_case
 {

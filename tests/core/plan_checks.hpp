@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/kernels/molecules/sparse_ldl/ldl_plan.hpp"
 #include "core/molecules/planned/elimination_plan.hpp"
+#include "core/plan/sparse_ldl.hpp"
 
 namespace plan_checks
 {

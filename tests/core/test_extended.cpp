@@ -175,7 +175,7 @@ void layouts_and_boxes_change_nothing()
     call.v = packed_array(boxed.m.v.data());
     call.f = packed_array(boxed.m.f.data());
     call.lambda = boxed.lambda.data();
-    call.box.shape = holonomic::Box::orthorhombic;
+    call.box.lattice = holonomic::Box::orthorhombic;
     for (int c = 0; c < 3; ++c) {
         call.box.h[4 * c] = 8;
         call.box.inverse[4 * c] = 0.125;

@@ -200,7 +200,7 @@ void threads_change_no_digit()
 void halves_of_a_square_share_few_edges()
 {
     for (const std::int32_t n : {8, 40, 100}) {
-        holonomic::Graph g;
+        holonomic::WeightedGraph g;
         g.start.assign(1, 0);
         for (std::int32_t i = 0; i < n * n; ++i) {
             if (i % n > 0) g.edge.push_back({i - 1, 1});

@@ -12,19 +12,19 @@
 namespace
 {
 
-using holonomic::quad_double::as_four;
-using holonomic::quad_double::Four;
+using holonomic::quad_double::as_quad_double;
+using holonomic::quad_double::QuadDouble;
 using exact = reference::wide_float<640>;
 
-exact value(const Four &a)
+exact value(const QuadDouble &a)
 {
     return exact(a.hi) + exact(a.second) + exact(a.third) + exact(a.fourth);
 }
 
 int failures = 0;
 
-// Four words of 53 bits, of which a few are lost.
-void check(const char *what, const Four &found, const exact &wanted, const exact &size)
+// QuadDouble words of 53 bits, of which a few are lost.
+void check(const char *what, const QuadDouble &found, const exact &wanted, const exact &size)
 {
     const long double error = static_cast<long double>((value(found) - wanted) / size);
     const bool ordered = found.hi != 0 || (found.second == 0 && found.third == 0 && found.fourth == 0);
@@ -39,13 +39,13 @@ struct Dice {
         return std::uniform_real_distribution<double>(-1, 1)(engine);
     }
     // Up to four words, with gaps between some of them.
-    Four any()
+    QuadDouble any()
     {
-        Four sum = as_four(number());
+        QuadDouble sum = as_quad_double(number());
         double size = 1;
         for (int word = static_cast<int>(engine() % 4); word > 0; --word) {
             size *= engine() % 3 == 0 ? 0x1p-70 : 0x1p-53;
-            sum = sum + as_four(size * number());
+            sum = sum + as_quad_double(size * number());
         }
         return sum;
     }
@@ -53,7 +53,7 @@ struct Dice {
 
 void check_operations(Dice &dice)
 {
-    const Four a = dice.any(), b = dice.any(), tiny = 0x1p-90 * dice.any();
+    const QuadDouble a = dice.any(), b = dice.any(), tiny = 0x1p-90 * dice.any();
     const exact x = value(a), y = value(b);
     check("a + b", a + b, x + y, exact(2));
     check("a - b", a - b, x - y, exact(2));
@@ -62,10 +62,10 @@ void check_operations(Dice &dice)
     check("a / b", a / b, x / y, x / y);
     // What is left of a sum in which the first words cancel.
     check("(a + tiny) - a", (a + tiny) - a, value(a + tiny) - x, exact(1));
-    const Four square = a * a, root = holonomic::quad_double::square_root(square);
+    const QuadDouble square = a * a, root = holonomic::quad_double::square_root(square);
     check("square root", root, a.hi < 0 ? -x : x, x);
     check("zero", a - a, exact(0), exact(1));
-    if (holonomic::quad_double::less(a, b) != (x < y)) check("less", as_four(1), exact(0), exact(1));
+    if (holonomic::quad_double::less(a, b) != (x < y)) check("less", as_quad_double(1), exact(0), exact(1));
 }
 
 }  // namespace

@@ -22,6 +22,12 @@ words='
 [Pp]ieces?.of.work    chunk
 Plan::Piece           Plan::Chunk
 Form::(chain|tree)     Topology
+LooseParts?           AffineParts
+run/apart             run/staging
+[Rr]oomy              padded
+[Rr]emainder          effective inverse mass
+pieces?.of.paths?     section
+pieces?.of.(a.)?(large.)?trees?  tile
 '
 status=0
 while read -r word now; do

@@ -26,7 +26,7 @@ cuts of_chain(std::int64_t n_bonds)
     if (n_bonds <= holonomic::longest_lane) return {};
     const Cut of_windows = windows(n_bonds);
     return {starts(Cut(n_bonds)),
-            of_windows.rows(0) < shortest_piece ? std::vector<std::int64_t>() : starts(of_windows)};
+            of_windows.rows(0) < shortest_window ? std::vector<std::int64_t>() : starts(of_windows)};
 }
 
 // As cut_of() in core/kernels/molecules/armed_tree/arm_store.hpp says. The last bond is a separator.

@@ -2,9 +2,9 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "core/kernels/molecules/paths/plan.hpp"
-#include "core/kernels/molecules/sparse_ldl/ldl_plan.hpp"
 #include "core/molecules/planned/elimination_plan.hpp"
+#include "core/plan/paths.hpp"
+#include "core/plan/sparse_ldl.hpp"
 #include "cuts.hpp"
 #include "seam_molecule.hpp"
 
@@ -33,29 +33,29 @@ void add_arms(const EliminationPlan &s, std::vector<atoms> &all)
     all.push_back(segments);
 }
 
-/** Atoms of the top, and those about which slots go on in another piece. */
-void add_pieces(const EliminationPlan &s, std::vector<atoms> &all)
+/** Atoms of the top, and those about which slots go on in another tile. */
+void add_tiles_of_tree(const EliminationPlan &s, std::vector<atoms> &all)
 {
     atoms top, cut;
     const EliminationPlan::Runs &runs = s.runs;
-    for (int i = runs.piece_start[s.n_pieces]; i < runs.piece_start[s.n_pieces + 1]; ++i)
+    for (int i = runs.tile_start[s.n_tiles]; i < runs.tile_start[s.n_tiles + 1]; ++i)
         for (int n = 0; n < runs.run[i].count; ++n) top.push_back(s.atom_of[runs.slot[runs.run[i].first + n]]);
-    for (int p = 1; p < s.n_pieces; ++p)
-        for (const int step : {-1, 0}) cut.push_back(s.atom_of[p * holonomic::slots_of_piece + step]);
+    for (int p = 1; p < s.n_tiles; ++p)
+        for (const int step : {-1, 0}) cut.push_back(s.atom_of[p * holonomic::slots_of_tile + step]);
     all.push_back(top);
     all.push_back(cut);
 }
 
 void add_paths(const PathPlan &p, std::vector<atoms> &all)
 {
-    atoms ends, pieces, overlaps;
+    atoms ends, sections, overlaps;
     for (int i = 0; i < p.n_paths; ++i) {
         const PathPlan::Path &path = p.path[i];
         for (const int n : {0, path.own, path.own_end, path.n_bonds}) ends.push_back(path.first_atom + n);
     }
-    for (int i = 0; i < p.n_pieces; ++i)
-        if (p.piece[i].from > p.path[p.piece[i].path].own)
-            pieces.push_back(p.path[p.piece[i].path].first_atom + p.piece[i].from);
+    for (int i = 0; i < p.n_sections; ++i)
+        if (p.section[i].from > p.path[p.section[i].path].own)
+            sections.push_back(p.path[p.section[i].path].first_atom + p.section[i].from);
     for (int k = 0; k < p.n_kinds; ++k)
         for (int l = 0; l < p.kind[k].n_overlaps * p.kind[k].count; ++l)
             for (int i = 0; i < PathPlan::n_reaches; ++i) {
@@ -65,7 +65,7 @@ void add_paths(const PathPlan &p, std::vector<atoms> &all)
                 overlaps.push_back(path.first_atom + (overlap.backwards ? path.n_bonds - reach : reach));
             }
     all.push_back(ends);
-    all.push_back(pieces);
+    all.push_back(sections);
     all.push_back(overlaps);
 }
 
@@ -93,7 +93,7 @@ std::vector<atoms> seams_of(seam_shape shape, const seam_graph &g)
     std::vector<atoms> all;
     if (shape == ARMS) add_arms(*s, all);
     if (shape == PATHS && s->paths) add_paths(*s->paths, all);
-    if (shape == PIECES && s->n_pieces > 1) add_pieces(*s, all);
+    if (shape == PIECES && s->n_tiles > 1) add_tiles_of_tree(*s, all);
     if (shape == TILES && s->ldl && !s->paths) add_tiles(*s, all);
     bool cut = !all.empty();
     for (const atoms &list : all) cut = cut && !list.empty();

@@ -10,7 +10,7 @@ namespace holonomic::HOL_ISA {
 template <bool extended, class V>
 HOL_INLINE void wrap(const Box &box, Vector3<V> &d, Vector3<V> &lo) {
     const double *h = box.h, *in = box.inverse;
-    if (!extended && box.shape == Box::orthorhombic) {
+    if (!extended && box.lattice == Box::orthorhombic) {
         const double *const per_side = box.per_side, *const minus_side = box.minus_side;
         d.x = mul_add(round(d.x * per_side[0]), V{} + minus_side[0], d.x);
         d.y = mul_add(round(d.y * per_side[1]), V{} + minus_side[1], d.y);
@@ -48,7 +48,7 @@ HOL_NOINLINE Vector3<vec> triclinic_image(const Box &box, Vector3<vec> d) {
 // The vector from one atom to another.
 HOL_INLINE Vector3<double> bond_vector(const Box &box, const double *from, const double *to) {
     Vector3<double> d = {to[0] - from[0], to[1] - from[1], to[2] - from[2]}, unused = {};
-    if (box.shape != Box::none) wrap<false>(box, d, unused);
+    if (box.lattice != Box::none) wrap<false>(box, d, unused);
     return d;
 }
 
@@ -60,7 +60,7 @@ HOL_INLINE void unrounded_bond(const Box &box, const Vector3<V> &from, const Vec
                   z = two_difference<V>(to.z, from.z);
     d = {x.hi, y.hi, z.hi};
     lo = {x.lo, y.lo, z.lo};
-    if (box.shape != Box::none) wrap<true>(box, d, lo);
+    if (box.lattice != Box::none) wrap<true>(box, d, lo);
 }
 HOL_INLINE void unrounded_bond(const Box &box, const double *from, const double *to, Vector3<double> &d,
                                Vector3<double> &lo) {
@@ -76,13 +76,13 @@ typedef vec components;
 #endif
 HOL_INLINE Pair<components> unrounded_bond(const Box &box, components from, components to) {
     Pair<components> d = two_difference<components>(to, from);
-    if (box.shape == Box::none) return d;
+    if (box.lattice == Box::none) return d;
     const double *const h = box.h, *const in = box.inverse;
     const auto fold = [&](components n, components side) HOL_FORCED {
         const Pair<components> p = two_product<components>(n, side), s = two_difference<components>(d.hi, p.hi);
         d = fast_two_sum<components>(s.hi, s.lo - p.lo + d.lo);
     };
-    if (box.shape == Box::orthorhombic) {
+    if (box.lattice == Box::orthorhombic) {
         fold(round(d.hi * components{in[0], in[4], in[8], 0}), components{h[0], h[4], h[8], 0});
         return d;
     }

@@ -23,11 +23,11 @@ constexpr double small_cosine = 1.0 / 32;
 constexpr double segment_cosine = HOL_HAS_FMA && W > 1 ? 1.0 / 64 : 1.0 / 32;
 
 // Chains (9): of the pivots w sin^2 + E there must be so much E, or the joint's cross product may be wrong by so many
-// roundings of what it is added to (eliminate/remainder.hpp has the three tests).
-constexpr double least_remainder = 1.0 / 4;
+// roundings of what it is added to (eliminate/effective_mass.hpp has the three tests).
+constexpr double least_effective_mass = 1.0 / 4;
 constexpr double joint_tolerance = 8;
 constexpr double spare_of_cross_products = 4 * joint_tolerance * joint_tolerance;
-// Where segments of a long chain are joined, c (20) is such a remainder, seen from the far end.
+// Where segments of a long chain are joined, c (20) is such an effective inverse mass, seen from the far end.
 constexpr double join_tolerance = joint_tolerance;
 
 // Trees (52): the part of a diagonal element that its pivot must keep, so that subtraction loses four bits at most.
@@ -80,6 +80,10 @@ constexpr double least_pivot = 1e-10;
 // A multiplier that is less of what meets at its bond's atoms is cancelling: residuals are right to some 2^-104 of
 // that.
 constexpr double cancelling_part = 1.0 / (1LL << 54);
+
+// Networks (60): a tree's child that offers less than the first part of the inverse mass of its atom is stiff, and that
+// atom's tensor is kept in twice the precision. What offers less than the second one is taken to offer so much.
+constexpr double stiff_offer = 1e-5, least_stiff_offer = 1e-14;
 
 // The metric (62): the part of what it is subtracted from that a pivot and E must keep. Its inverse is that many
 // roundings off H.

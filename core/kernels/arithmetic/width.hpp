@@ -8,20 +8,20 @@
 namespace holonomic::HOL_ISA {
 
 // The mask of a single lane.
-struct Flag {
+struct ScalarMask {
     bool set;
 };
-HOL_INLINE Flag operator&(Flag a, Flag b) { return {a.set && b.set}; }
-HOL_INLINE Flag operator|(Flag a, Flag b) { return {a.set || b.set}; }
-HOL_INLINE Flag operator~(Flag a) { return {!a.set}; }
+HOL_INLINE ScalarMask operator&(ScalarMask a, ScalarMask b) { return {a.set && b.set}; }
+HOL_INLINE ScalarMask operator|(ScalarMask a, ScalarMask b) { return {a.set || b.set}; }
+HOL_INLINE ScalarMask operator~(ScalarMask a) { return {!a.set}; }
 
-HOL_INLINE bool any(Flag a) { return a.set; }
-HOL_INLINE unsigned bits(Flag a) { return a.set; }
-HOL_INLINE Flag less(double a, double b) { return {a < b}; }
-HOL_INLINE Flag less_equal(double a, double b) { return {a <= b}; }
-HOL_INLINE Flag finite(double a) { return {a - a == 0}; }
-HOL_INLINE double select(Flag m, double a, double b) { return m.set ? a : b; }
-HOL_INLINE double keep(Flag m, double a) { return m.set ? a : 0; }
+HOL_INLINE bool any(ScalarMask a) { return a.set; }
+HOL_INLINE unsigned bits(ScalarMask a) { return a.set; }
+HOL_INLINE ScalarMask less(double a, double b) { return {a < b}; }
+HOL_INLINE ScalarMask less_equal(double a, double b) { return {a <= b}; }
+HOL_INLINE ScalarMask finite(double a) { return {a - a == 0}; }
+HOL_INLINE double select(ScalarMask m, double a, double b) { return m.set ? a : b; }
+HOL_INLINE double keep(ScalarMask m, double a) { return m.set ? a : 0; }
 HOL_INLINE double max(double a, double b) { return a > b ? a : b; }  // b where one is NaN, as the instruction has it
 HOL_INLINE double min(double a, double b) { return a < b ? a : b; }
 HOL_INLINE double sqrt(double a) { return __builtin_sqrt(a); }
@@ -56,12 +56,12 @@ struct Width<vec> {
 
 template <>
 struct Width<double> {
-    typedef Flag Mask;
+    typedef ScalarMask Mask;
     static constexpr int lanes = 1;
     HOL_STATIC double all(double a) { return a; }
-    HOL_STATIC Flag none() { return {false}; }
-    HOL_STATIC Flag first(int n) { return {n > 0}; }
-    HOL_STATIC Flag of_bits(unsigned b) { return {(b & 1) != 0}; }
+    HOL_STATIC ScalarMask none() { return {false}; }
+    HOL_STATIC ScalarMask first(int n) { return {n > 0}; }
+    HOL_STATIC ScalarMask of_bits(unsigned b) { return {(b & 1) != 0}; }
     HOL_STATIC double get(double a, int) { return a; }
     HOL_STATIC void set(double &a, int, double x) { a = x; }
     typedef long long Integers;

@@ -9,7 +9,7 @@
 namespace holonomic::HOL_ISA {
 
 // Where the rows x y z of each lane begin.
-struct Rows {
+struct BodyRows {
     double *base;
     const int64_t *first;  // [W]
 };
@@ -30,11 +30,11 @@ struct BodyBlock {
         consecutive = unit.consecutive;
     }
     HOL_FORCED bool in_a_row(const AtomArray &array) const { return array.packed && consecutive; }
-    HOL_FORCED Rows rows(const AtomArray &array) const { return {reinterpret_cast<double *>(array.x), first}; }
+    HOL_FORCED BodyRows rows(const AtomArray &array) const { return {reinterpret_cast<double *>(array.x), first}; }
 
     // Copies the rows [3 n_atoms] of all lanes. without_sites: zeros in their place.
-    __attribute__((noinline)) Rows copy_rows(const AtomArray &array, double *copy, int64_t *first_of_copy,
-                                             bool without_sites) const {
+    __attribute__((noinline)) BodyRows copy_rows(const AtomArray &array, double *copy, int64_t *first_of_copy,
+                                                 bool without_sites) const {
         double *to = copy;
         for (int l = 0; l < W; ++l) {
             first_of_copy[l] = to - copy;
@@ -70,7 +70,7 @@ struct BodyBlock {
     }
 };
 
-HOL_INLINE void rows_at(const Rows &rows, long k, double **to) {
+HOL_INLINE void rows_at(const BodyRows &rows, long k, double **to) {
     HOL_UNROLL
     for (int l = 0; l < W; ++l) to[l] = rows.base + rows.first[l] + k;
 }
@@ -81,7 +81,7 @@ HOL_INLINE void rows_at(double *const *rows, long k, double **to) {
 
 // Calls each(a, vector) for the atoms a .. n - 1, which are read two by two.
 template <class Each>
-HOL_INLINE void for_each_of_rows(const Rows &rows, long a, long n, const Each &each) {
+HOL_INLINE void for_each_of_rows(const BodyRows &rows, long a, long n, const Each &each) {
     double *r[W], *p[W];
     rows_at(rows, 0, r);
     for (; a + 2 <= n; a += 2) {
@@ -107,7 +107,7 @@ HOL_INLINE void for_each_of_rows(const Rows &rows, long a, long n, const Each &e
     each(a, one);
 }
 
-HOL_INLINE vec3 first_of(const Rows &rows) {
+HOL_INLINE vec3 first_of(const BodyRows &rows) {
     double *r[W];
     rows_at(rows, 0, r);
     vec3 x;
@@ -115,7 +115,7 @@ HOL_INLINE vec3 first_of(const Rows &rows) {
     return x;
 }
 
-HOL_NOINLINE void read_vectors(const Rows rows, long n, vec3 *x) {
+HOL_NOINLINE void read_vectors(const BodyRows rows, long n, vec3 *x) {
     for_each_of_rows(rows, 0, n, [&](long a, const vec3 &r) HOL_FORCED { put(x[a], r); });
 }
 
@@ -134,7 +134,7 @@ HOL_INLINE void for_each_to_rows(long n, const Get &get, const Put &put) {
 
 // Writes get(a) for n atoms.
 template <class Get>
-HOL_INLINE void write_rows(const Rows &rows, long n, const Get &get) {
+HOL_INLINE void write_rows(const BodyRows &rows, long n, const Get &get) {
     double *r[W];
     rows_at(rows, 0, r);
     for_each_to_rows(n, get, [&](auto elements, long k, vec3 *x) HOL_FORCED {
@@ -146,7 +146,7 @@ HOL_INLINE void write_rows(const Rows &rows, long n, const Get &get) {
 
 // Adds get(a) to r, and factor times it to v, whose base may be null.
 template <class Get>
-HOL_INLINE void add_rows(const Rows &to_r, const Rows &to_v, long n, double factor, const Get &get) {
+HOL_INLINE void add_rows(const BodyRows &to_r, const BodyRows &to_v, long n, double factor, const Get &get) {
     double *r[W], *v[W];
     rows_at(to_r, 0, r);
     rows_at(to_v.base ? to_v : to_r, 0, v);
@@ -165,7 +165,7 @@ HOL_NOINLINE void unfold(const BodyKind &kind, const Box &box, const vec3 *raw, 
     for (long k = 0; k + 1 < kind.n_atoms; ++k) {
         const long to = kind.steps[2 * k], from = kind.steps[2 * k + 1];
         vec3 d = raw[to] - raw[from], unused = {};
-        if (box.shape == Box::triclinic)
+        if (box.lattice == Box::triclinic)
             d = triclinic_image(box, d);
         else
             wrap<false>(box, d, unused);

@@ -62,12 +62,12 @@ struct Frame {
         HOL_UNROLL_FEW
         for (int k = first; k <= R; ++k) put(of[k], less_times(of[k], splat(weights[k]), x));
     }
-    // The vector at an atom that has these places.
-    HOL_FORCED vec3 at(const double *place) const {
+    // The vector at an atom that has these coordinates.
+    HOL_FORCED vec3 at(const double *coordinates) const {
         vec x = of[0].x, y = of[0].y, z = of[0].z;
         HOL_UNROLL_FEW
         for (int p = 1; p <= R; ++p) {
-            const vec w = splat(place[p]);
+            const vec w = splat(coordinates[p]);
             x = mul_add(w, of[p].x, x);
             y = mul_add(w, of[p].y, y);
             z = mul_add(w, of[p].z, z);

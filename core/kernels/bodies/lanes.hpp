@@ -53,13 +53,13 @@ HOL_NOINLINE vec take_axes(const From from, const BodyKind &kind, const Frame<R>
     put(base[0], vec3{} - first_of(from));
     HOL_UNROLL_FEW
     for (int p = 1; p <= R; ++p) put(base[p], axes[p]);
-    const double *const place = kind.place;
-    const vec3 origin = base.at(place);
+    const double *const coordinates = kind.coordinates;
+    const vec3 origin = base.at(coordinates);
     vec largest = {};
     for_each_of_rows(from, 0, kind.n_atoms, [&](long a, const vec3 &x) HOL_FORCED {
         vec3 t = x + origin;
         HOL_UNROLL_FEW
-        for (int p = 1; p <= R; ++p) t = less_times(t, splat(place[a * (1 + R) + p]), base[p]);
+        for (int p = 1; p <= R; ++p) t = less_times(t, splat(coordinates[a * (1 + R) + p]), base[p]);
         put(off[a], t);
         largest = max(largest, dot(t, t));
     });
@@ -67,32 +67,33 @@ HOL_NOINLINE vec take_axes(const From from, const BodyKind &kind, const Frame<R>
 }
 
 template <int R>
-HOL_NOINLINE void write_at(const BodyKind &kind, const Frame<R> &__restrict frame, const Rows to) {
+HOL_NOINLINE void write_at(const BodyKind &kind, const Frame<R> &__restrict frame, const BodyRows to) {
     const Frame<R> f = frame;
-    const double *const place = kind.place;
-    write_rows(to, kind.n_atoms, [&](long a) HOL_FORCED { return f.at(place + a * (1 + R)); });
+    const double *const coordinates = kind.coordinates;
+    write_rows(to, kind.n_atoms, [&](long a) HOL_FORCED { return f.at(coordinates + a * (1 + R)); });
 }
 
 // m times the acceleration, less the force.
 template <int R>
-HOL_INLINE vec3 force_at(const Frame<R> &z, const double *place, const double *masses, const vec3 *f, long a) {
-    const vec3 u = z.at(place + a * (1 + R));
+HOL_INLINE vec3 force_at(const Frame<R> &z, const double *coordinates, const double *masses, const vec3 *f, long a) {
+    const vec3 u = z.at(coordinates + a * (1 + R));
     const vec m = splat(masses[a]);
     return {mul_sub(m, u.x, f[a].x), mul_sub(m, u.y, f[a].y), mul_sub(m, u.z, f[a].z)};
 }
 template <int R>
-HOL_NOINLINE void write_forces_at(const BodyKind &kind, const Frame<R> &__restrict z, const vec3 *f, const Rows to) {
+HOL_NOINLINE void write_forces_at(const BodyKind &kind, const Frame<R> &__restrict z, const vec3 *f,
+                                  const BodyRows to) {
     const Frame<R> u = z;
-    const double *const place = kind.place, *const masses = kind.masses;
-    write_rows(to, kind.n_atoms, [&](long a) HOL_FORCED { return force_at(u, place, masses, f, a); });
+    const double *const coordinates = kind.coordinates, *const masses = kind.masses;
+    write_rows(to, kind.n_atoms, [&](long a) HOL_FORCED { return force_at(u, coordinates, masses, f, a); });
 }
 
 template <int R>
-HOL_NOINLINE void add_moves(const BodyKind &kind, const Frame<R> &__restrict change, const vec3 *off, const Rows r,
-                            const Rows v, double per_dt) {
+HOL_NOINLINE void add_moves(const BodyKind &kind, const Frame<R> &__restrict change, const vec3 *off, const BodyRows r,
+                            const BodyRows v, double per_dt) {
     const Frame<R> t = change;
-    const double *const place = kind.place;
-    add_rows(r, v, kind.n_atoms, per_dt, [&](long a) HOL_FORCED { return t.at(place + a * (1 + R)) - off[a]; });
+    const double *const coordinates = kind.coordinates;
+    add_rows(r, v, kind.n_atoms, per_dt, [&](long a) HOL_FORCED { return t.at(coordinates + a * (1 + R)) - off[a]; });
 }
 
 // Of a block, in doubles.
@@ -115,8 +116,8 @@ struct BodyLanes : BodyBlock {
     // Calls with(From) for the coordinates, or where there is a box for those of images from the first atom's.
     template <class With>
     HOL_FORCED void with_places(const AtomArray &array, const Box &box, const With &with) {
-        const Rows rows = rows_of(array);
-        if (__builtin_expect(box.shape == Box::none, 1)) return with(rows);
+        const BodyRows rows = rows_of(array);
+        if (__builtin_expect(box.lattice == Box::none, 1)) return with(rows);
         read_vectors(rows, kind.n_atoms, x);
         unfold(kind, box, x, y);
         with(static_cast<const vec3 *>(y));
@@ -138,13 +139,13 @@ struct BodyLanes : BodyBlock {
             for (long a = 0; a < kind.n_atoms; ++a) y[a].x = y[a].y = y[a].z = vec{};
             return;
         }
-        sum_all<R, of_forces>(rows_of(array), kind, kind.place, kind.n_atoms, to, y);
+        sum_all<R, of_forces>(rows_of(array), kind, kind.coordinates, kind.n_atoms, to, y);
     }
 
     HOL_FORCED void write_forces(const ForcesCall &call, const Frame<R> &z, unsigned lanes) {
         const bool in_rows = takes_rows(call.g, lanes);
         if (__builtin_expect(in_rows && !call.add, 1)) return write_forces_at(kind, z, y, rows(call.g));
-        for (long a = 0; a < kind.n_atoms; ++a) put(y[a], force_at(z, kind.place, kind.masses, y, a));
+        for (long a = 0; a < kind.n_atoms; ++a) put(y[a], force_at(z, kind.coordinates, kind.masses, y, a));
         if (in_rows)
             add_rows(rows(call.g), {nullptr, first}, kind.n_atoms, 1, [&](long a) HOL_FORCED { return y[a]; });
         else if (call.add)
@@ -159,7 +160,7 @@ struct BodyLanes : BodyBlock {
     }
     HOL_FORCED void write_rates(const AtomArray &array, const Frame<R> &rate, unsigned lanes) {
         if (takes_rows(array, lanes)) return write_at(kind, rate, rows(array));
-        for (long a = 0; a < kind.n_atoms; ++a) put(x[a], rate.at(kind.place + a * (1 + R)));
+        for (long a = 0; a < kind.n_atoms; ++a) put(x[a], rate.at(kind.coordinates + a * (1 + R)));
         write_some(array, x, lanes);
     }
 
@@ -182,7 +183,7 @@ struct BodyLanes : BodyBlock {
         const double per_dt = 1 / call.dt;
         if (takes_rows(call.r, lanes) && (!call.v.x || takes_rows(call.v, lanes)))
             return add_moves(kind, change, x, rows(call.r), rows(call.v), per_dt);
-        for (long a = 0; a < kind.n_atoms; ++a) put(x[a], change.at(kind.place + a * (1 + R)) - x[a]);
+        for (long a = 0; a < kind.n_atoms; ++a) put(x[a], change.at(kind.coordinates + a * (1 + R)) - x[a]);
         add_some(call.r, 1, x, lanes);
         if (call.v.x) add_some(call.v, per_dt, x, lanes);
     }
@@ -195,7 +196,7 @@ struct BodyLanes : BodyBlock {
             if (kind.height) turn = normal_rate(axes, rate, flow);
         for (long a = 0; a < kind.n_atoms; ++a) {
             if (kind.masses[a] != 0) continue;
-            vec3 u = rate.at(kind.place + a * (1 + R));
+            vec3 u = rate.at(kind.coordinates + a * (1 + R));
             if (kind.height) u = add_times(u, splat(kind.height[a]), turn);
             if (takes_rows(array, lanes)) {
                 double *r[W], *to[W];
@@ -212,7 +213,7 @@ struct BodyLanes : BodyBlock {
     }
 
 private:
-    HOL_FORCED Rows rows_of(const AtomArray &array, bool without_sites = false) {
+    HOL_FORCED BodyRows rows_of(const AtomArray &array, bool without_sites = false) {
         if (__builtin_expect(without_sites || !in_a_row(array), 0))
             return copy_rows(array, copy, first_of_copy, without_sites);
         return rows(array);

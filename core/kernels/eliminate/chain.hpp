@@ -8,22 +8,22 @@
 // it is, and 2 lambda for one that has been divided by the unit.
 #pragma once
 
-#include "core/kernels/eliminate/remainder.hpp"
+#include "core/kernels/eliminate/effective_mass.hpp"
 #include "core/kernels/memory/arena.hpp"
 #include "core/kernels/memory/load.hpp"
 
 namespace holonomic::HOL_ISA {
 
 // Interleaved working arrays of a linear solve, with room for W bonds more in what is read from memory.
-struct System {
+struct ChainSystem {
     vec3 *D, *D_low;
     vec *t, *L;   // t: right-hand side, then u = y / P, then the solution; L[0 .. n]: L[0] and L[n] are of no joint
     vec *pivots;  // 1 / P
-    System(long n, Arena &arena)
+    ChainSystem(long n, Arena &arena)
         : D(reinterpret_cast<vec3 *>(arena.vecs(3 * (n + W)))),
           D_low(reinterpret_cast<vec3 *>(arena.vecs(3 * (n + W)))), t(arena.vecs(n + W)), L(arena.vecs(n + 1)),
           pivots(arena.vecs(n)) {}
-    System(vec3 *bonds, vec *values, vec *multipliers, vec *reciprocals)
+    ChainSystem(vec3 *bonds, vec *values, vec *multipliers, vec *reciprocals)
         : D(bonds), D_low(nullptr), t(values), L(multipliers), pivots(reciprocals) {}
 };
 
@@ -33,11 +33,11 @@ template <bool uniform, bool keep_pivots, class Where = Source>
 struct Sweep {
     const Block &block;
     const Where &source;
-    const System s;
+    const ChainSystem s;
     vec3 d = {};  // the bond before
     vec q = {};
-    Column e = {splat(1.0), vec{}};  // E
-    vec F1 = {}, rF = splat(1.0);    // P = F1 / F of the bond before; rF = 1 / F1
+    Fraction e = {splat(1.0), vec{}};  // E
+    vec F1 = {}, rF = splat(1.0);      // P = F1 / F of the bond before; rF = 1 / F1
     vec rP = {}, y = {};
     vec margin = {};  // negative where the cheap tests failed
     // Sum of |u|, q, 1 / P and w. With kept pivots |u| is left out: the end of the second solve shows an overflow.
@@ -61,9 +61,9 @@ struct Sweep {
             g2 = keep(m, g2);
             X = keep(m, X);
         }
-        const vec remainder = spare(e, F1, 1 / least_remainder);
-        const mask signs = as_mask(not_orthogonal(g2, X)) | as_mask(remainder);
-        if (__builtin_expect(any(signs), 0)) delicate_joint(k, d1, remainder, ragged, g, X);
+        const vec little_left = spare(e, F1, 1 / least_effective_mass);
+        const mask signs = as_mask(not_orthogonal(g2, X)) | as_mask(little_left);
+        if (__builtin_expect(any(signs), 0)) delicate_joint(k, d1, little_left, ragged, g, X);
         const vec l = (w * g) * rP;
         y = mul_add(l, y, b());
         s.L[k] = l;
@@ -87,8 +87,8 @@ struct Sweep {
 
     // For joints of nearly orthogonal bonds, and joints with little of E left before them. A call in its place took 10
     // instructions a bond more, because of the registers that it may change.
-    inline HOL_FORCED void delicate_joint(long k, const vec3 &d1, vec remainder, bool ragged, vec &g, vec &X) {
-        mask little = less(remainder, vec{});
+    inline HOL_FORCED void delicate_joint(long k, const vec3 &d1, vec little_left, bool ragged, vec &g, vec &X) {
+        mask little = less(little_left, vec{});
         if (ragged) little = little & joint(block, k);
         if (any(little)) {
             const vec3 c = cross(d, d1);
@@ -120,7 +120,7 @@ struct Sweep {
 // Returns the lanes that plain arithmetic can answer for, and in `calm` those in which nothing can overflow from here
 // on.
 template <bool uniform, bool keep_pivots>
-HOL_NOINLINE mask forward(const Block &block, const Reader &in, const System &s, vec3 *velocities, mask &calm) {
+HOL_NOINLINE mask forward(const Block &block, const Reader &in, const ChainSystem &s, vec3 *velocities, mask &calm) {
     const Source source = in.source();
     Sweep<uniform, keep_pivots> sweep{block, source, s};
     for (long k0 = 0; k0 < block.n; k0 += stage_bonds) {
@@ -149,7 +149,7 @@ constexpr double largest_reciprocal = 1e140;
 // whose numbers don't overflow or underflow; if they do, u_0 becomes NaN. `overflow` looks at q as well: a last bond of
 // infinite q would pass for one without tension.
 template <bool uniform>
-HOL_NOINLINE void forward_extended(const Block &block, const System &s) {
+HOL_NOINLINE void forward_extended(const Block &block, const ChainSystem &s) {
     const long n = block.n;
     vec size = {}, overflow = {};  // of reciprocals of pivots; NaN if any q or E is infinite
     vec q = dot(s.D[0], s.D[0]), E = w_at<uniform>(block, 0) * q, y = s.t[0];
@@ -188,7 +188,7 @@ HOL_INLINE void backward(long from, long n, vec *u, const vec *L) {
 }
 
 // The forward sweep for another right-hand side, with 1 / P and L of an earlier elimination.
-HOL_INLINE void substitute(long n, const System &s) {
+HOL_INLINE void substitute(long n, const ChainSystem &s) {
     vec y = s.t[0];
     s.t[0] = y * s.pivots[0];
 #pragma GCC unroll 4

@@ -249,7 +249,7 @@ HOL_INLINE void turn(const Geometry &x, long k, double kT) {
 template <bool uniform>
 static inline void turn_back(const Block &block, const Geometry &x, double kT) {
     const long n = block.n;
-    Vector3<Four> behind = {{four{}}, {four{}}, {four{}}};
+    Vector3<FourLanes> behind = {{four{}}, {four{}}, {four{}}};
     long k = (n - 1) / 4 * 4;
     // What has just been stored one by one is read so, too; there is nothing behind the last bond.
     const auto near = [&](const vec *p, long i) HOL_FORCED {

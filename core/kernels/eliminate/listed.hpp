@@ -12,7 +12,7 @@ namespace holonomic::HOL_ISA {
 
 // As substitute_and_store() (substitute.hpp), to the lists.
 template <Update update>
-HOL_NOINLINE void substitute_and_scatter(const Block &block, const System &s, const AtomLists &at, double *out,
+HOL_NOINLINE void substitute_and_scatter(const Block &block, const ChainSystem &s, const AtomLists &at, double *out,
                                          double *value_out, vec factor) {
     vec t = {}, values[W];
     vec3 after = {};

@@ -9,20 +9,20 @@
 namespace holonomic::HOL_ISA {
 
 // A type of its own: the templates of exact.hpp find its functions.
-struct Four {
+struct FourLanes {
     four v;
 };
-HOL_INLINE Four operator+(Four a, Four b) { return {a.v + b.v}; }
-HOL_INLINE Four operator-(Four a, Four b) { return {a.v - b.v}; }
-HOL_INLINE Four operator*(Four a, Four b) { return {a.v * b.v}; }
-HOL_INLINE Four operator/(Four a, Four b) { return {a.v / b.v}; }
-HOL_INLINE Four operator-(Four a) { return {-a.v}; }
-HOL_INLINE Four mul_add(Four a, Four b, Four c) { return {_mm256_fmadd_pd(a.v, b.v, c.v)}; }
-HOL_INLINE Four abs(Four a) { return {_mm256_andnot_pd(_mm256_set1_pd(-0.0), a.v)}; }
-HOL_INLINE Four max(Four a, Four b) { return {_mm256_max_pd(a.v, b.v)}; }
-HOL_INLINE Four round(Four a) { return {round(a.v)}; }
-HOL_INLINE Four operator*(Four a, double b) { return {a.v * b}; }
-HOL_INLINE Four operator+(Four a, double b) { return {a.v + b}; }
+HOL_INLINE FourLanes operator+(FourLanes a, FourLanes b) { return {a.v + b.v}; }
+HOL_INLINE FourLanes operator-(FourLanes a, FourLanes b) { return {a.v - b.v}; }
+HOL_INLINE FourLanes operator*(FourLanes a, FourLanes b) { return {a.v * b.v}; }
+HOL_INLINE FourLanes operator/(FourLanes a, FourLanes b) { return {a.v / b.v}; }
+HOL_INLINE FourLanes operator-(FourLanes a) { return {-a.v}; }
+HOL_INLINE FourLanes mul_add(FourLanes a, FourLanes b, FourLanes c) { return {_mm256_fmadd_pd(a.v, b.v, c.v)}; }
+HOL_INLINE FourLanes abs(FourLanes a) { return {_mm256_andnot_pd(_mm256_set1_pd(-0.0), a.v)}; }
+HOL_INLINE FourLanes max(FourLanes a, FourLanes b) { return {_mm256_max_pd(a.v, b.v)}; }
+HOL_INLINE FourLanes round(FourLanes a) { return {round(a.v)}; }
+HOL_INLINE FourLanes operator*(FourLanes a, double b) { return {a.v * b}; }
+HOL_INLINE FourLanes operator+(FourLanes a, double b) { return {a.v + b}; }
 
 // The bonds of one stage in units of their scales, and 1 / |d| there; components apart. From place 4 on; before them
 // stands the last one of the stage before.
@@ -31,26 +31,26 @@ struct MeasuredBonds {
     double d[3][most + 4], low[3][most + 4], r[most + 4];
 };
 typedef double Row[MeasuredBonds::most + 4];
-HOL_INLINE void put(Row *to, long i, const Vector3<Four> &v) {
+HOL_INLINE void put(Row *to, long i, const Vector3<FourLanes> &v) {
     store_any(to[0] + i, v.x);
     store_any(to[1] + i, v.y);
     store_any(to[2] + i, v.z);
 }
-HOL_INLINE Vector3<Four> get(const Row *of, long i) {
-    return {load_any<Four>(of[0] + i), load_any<Four>(of[1] + i), load_any<Four>(of[2] + i)};
+HOL_INLINE Vector3<FourLanes> get(const Row *of, long i) {
+    return {load_any<FourLanes>(of[0] + i), load_any<FourLanes>(of[1] + i), load_any<FourLanes>(of[2] + i)};
 }
 
 // As they stand in memory.
-HOL_INLINE Vector3<Four> as_fours(const four *part) {
+HOL_INLINE Vector3<FourLanes> as_fours(const four *part) {
     const Vector3<four> a = as_vectors(part);
     return {{a.x}, {a.y}, {a.z}};
 }
-HOL_INLINE Vector3<Four> read_vectors(const double *p) {
+HOL_INLINE Vector3<FourLanes> read_vectors(const double *p) {
     four part[3];
     for (int j = 0; j < 3; ++j) part[j] = load_any<four>(p + 4 * j);
     return as_fours(part);
 }
-HOL_INLINE void write_vectors(double *p, const Vector3<Four> &v) {
+HOL_INLINE void write_vectors(double *p, const Vector3<FourLanes> &v) {
     const four a = _mm256_shuffle_pd(v.x.v, v.y.v, 0), b = _mm256_shuffle_pd(v.z.v, v.x.v, 10),
                c = _mm256_shuffle_pd(v.y.v, v.z.v, 15);
     store_any(p, four(_mm256_permute2f128_pd(a, b, 0x20)));
@@ -59,18 +59,18 @@ HOL_INLINE void write_vectors(double *p, const Vector3<Four> &v) {
 }
 
 // As of lanes, in deficits.hpp.
-HOL_INLINE Four reciprocal_scale(Four a) {
+HOL_INLINE FourLanes reciprocal_scale(FourLanes a) {
     const __m256i exponents = _mm256_and_si256(_mm256_castpd_si256(a.v), _mm256_set1_epi64x(0x7ff0000000000000LL));
     return {_mm256_castsi256_pd(_mm256_sub_epi64(_mm256_set1_epi64x(2 * 0x3ff0000000000000LL), exponents))};
 }
 
 // Few calls have a box, so it is not inlined.
-HOL_NOINLINE void fold(const Box &box, Vector3<Four> *d, Vector3<Four> *low) { wrap<true>(box, *d, *low); }
+HOL_NOINLINE void fold(const Box &box, Vector3<FourLanes> *d, Vector3<FourLanes> *low) { wrap<true>(box, *d, *low); }
 
 // Four bonds from the atom at r on, unrounded. Of the last ones there are `left`, fewer than four; beside them stand
 // bonds that are there for this alone.
 template <bool last>
-HOL_INLINE void read_bonds(const Box &box, const double *r, long left, Vector3<Four> &d, Vector3<Four> &low) {
+HOL_INLINE void read_bonds(const Box &box, const double *r, long left, Vector3<FourLanes> &d, Vector3<FourLanes> &low) {
     static const long long inside[24] = {-1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1};
     const auto mask_of = [&](long i) HOL_FORCED {
         return _mm256_loadu_si256(reinterpret_cast<const __m256i *>(inside + 12 + i));
@@ -88,8 +88,8 @@ HOL_INLINE void read_bonds(const Box &box, const double *r, long left, Vector3<F
     }
     d = as_fours(hi);
     low = as_fours(lo);
-    if (__builtin_expect(box.shape != Box::none, 0)) {
-        Vector3<Four> folded = d, folded_low = low;
+    if (__builtin_expect(box.lattice != Box::none, 0)) {
+        Vector3<FourLanes> folded = d, folded_low = low;
         fold(box, &folded, &folded_low);
         d = folded;
         low = folded_low;
@@ -105,11 +105,11 @@ HOL_INLINE void read_bonds(const Box &box, const double *r, long left, Vector3<F
 template <bool last, class Geometry>
 HOL_INLINE void measure_bonds(const Box &box, const double *r, long k, long n, const Geometry &x, MeasuredBonds &to,
                               long i) {
-    Vector3<Four> raw, raw_low;
+    Vector3<FourLanes> raw, raw_low;
     read_bonds<last>(box, r + 3 * k, n - k, raw, raw_low);
-    const Four s = reciprocal_scale(max(max(abs(raw.x), abs(raw.y)), abs(raw.z)));
-    const Vector3<Four> d = s * raw, low = s * raw_low;
-    const Four q = square_of(d, low), one_over = Four{four{} + 1.0} / Four{_mm256_sqrt_pd(q.v)};
+    const FourLanes s = reciprocal_scale(max(max(abs(raw.x), abs(raw.y)), abs(raw.z)));
+    const Vector3<FourLanes> d = s * raw, low = s * raw_low;
+    const FourLanes q = square_of(d, low), one_over = FourLanes{four{} + 1.0} / FourLanes{_mm256_sqrt_pd(q.v)};
     put(to.d, i, d);
     put(to.low, i, low);
     store_any(to.r + i, one_over);  // what needs it comes later: a scheduler is full of what waits for quotients
@@ -120,14 +120,14 @@ HOL_INLINE void measure_bonds(const Box &box, const double *r, long k, long n, c
 // The joints before bonds k .. k + 3, which stand at place i of the stage. turns: for forces, too.
 template <bool uniform, bool turns, class Geometry>
 HOL_INLINE void measure_joints(const MeasuredBonds &of, long i, const vec *w, long k, const Geometry &x) {
-    const Four one = {four{} + 1.0}, r = load_any<Four>(of.r + i), f = load_any<Four>(of.r + i - 1) * r;
-    const Vector3<Four> d0 = get(of.d, i - 1), low0 = get(of.low, i - 1), d = get(of.d, i), low = get(of.low, i);
-    const Four c = dot_compensated(d0, low0, d, low) * f;
-    const Vector3<Four> n = f * cross_compensated(d0, low0, d, low);
-    const Four size = abs(c), near = one - size, far = dot(n, n) / (one + size);
-    Four side = {_mm256_blendv_pd(far.v, near.v, _mm256_cmp_pd(size.v, four{} + 0.5, _CMP_LT_OQ))}, p = size;
+    const FourLanes one = {four{} + 1.0}, r = load_any<FourLanes>(of.r + i), f = load_any<FourLanes>(of.r + i - 1) * r;
+    const Vector3<FourLanes> d0 = get(of.d, i - 1), low0 = get(of.low, i - 1), d = get(of.d, i), low = get(of.low, i);
+    const FourLanes c = dot_compensated(d0, low0, d, low) * f;
+    const Vector3<FourLanes> n = f * cross_compensated(d0, low0, d, low);
+    const FourLanes size = abs(c), near = one - size, far = dot(n, n) / (one + size);
+    FourLanes side = {_mm256_blendv_pd(far.v, near.v, _mm256_cmp_pd(size.v, four{} + 0.5, _CMP_LT_OQ))}, p = size;
     if (!uniform) {
-        const Four of_atom = {load_four(w + k)};
+        const FourLanes of_atom = {load_four(w + k)};
         p = of_atom * p;
         side = of_atom * side;
     }
@@ -172,13 +172,13 @@ struct DeficitsOfFour {
 // either side. `behind`: the joint behind them, weighed; then these.
 template <bool uniform, class Geometry>
 HOL_INLINE void turn_in_fours(const vec *w, long k, double kT, const Geometry &x, DeficitsOfFour left,
-                              DeficitsOfFour right, Vector3<Four> &behind) {
+                              DeficitsOfFour right, Vector3<FourLanes> &behind) {
     const four one = four{} + 1.0, zero = {}, sign = _mm256_set1_pd(-0.0);
     four p = load_four(x.p + k), A = left.A, B = right.A, of_atom = one;
     const four coupled = _mm256_cmp_pd(zero, p, _CMP_LT_OQ);
     if (!uniform) {
         of_atom = load_four(w + k);
-        const four s = reciprocal_scale(max(max(Four{A}, Four{B}), Four{of_atom})).v;
+        const four s = reciprocal_scale(max(max(FourLanes{A}, FourLanes{B}), FourLanes{of_atom})).v;
         p = s * p;
         A = s * A;
         B = s * B;
@@ -187,14 +187,14 @@ HOL_INLINE void turn_in_fours(const vec *w, long k, double kT, const Geometry &x
     const four pF = p * left.F, pG = p * right.F;
     const four whole = mul_add(pG, A, mul_add(pF, B, A * B));
     const four size = of_atom * (pF * right.F) / _mm256_blendv_pd(one, whole, coupled);
-    const Four h = {_mm256_and_pd(coupled, _mm256_or_pd(size, _mm256_and_pd(load_four(x.cosine + k), sign)))};
-    const Vector3<Four> a = h * read_vectors(&x.normal[k].x.element);
-    const auto next = [](Four here, Four after) HOL_FORCED {
-        return Four{_mm256_shuffle_pd(here.v, _mm256_permute2f128_pd(here.v, after.v, 0x21), 5)};
+    const FourLanes h = {_mm256_and_pd(coupled, _mm256_or_pd(size, _mm256_and_pd(load_four(x.cosine + k), sign)))};
+    const Vector3<FourLanes> a = h * read_vectors(&x.normal[k].x.element);
+    const auto next = [](FourLanes here, FourLanes after) HOL_FORCED {
+        return FourLanes{_mm256_shuffle_pd(here.v, _mm256_permute2f128_pd(here.v, after.v, 0x21), 5)};
     };
-    const Vector3<Four> b = {next(a.x, behind.x), next(a.y, behind.y), next(a.z, behind.z)};
-    const Vector3<Four> v = cross(read_vectors(&x.u[k].x.element), b - a);
-    write_vectors(&x.u[k].x.element, {v.x + Four{zero}, v.y + Four{zero}, v.z + Four{zero}});
+    const Vector3<FourLanes> b = {next(a.x, behind.x), next(a.y, behind.y), next(a.z, behind.z)};
+    const Vector3<FourLanes> v = cross(read_vectors(&x.u[k].x.element), b - a);
+    write_vectors(&x.u[k].x.element, {v.x + FourLanes{zero}, v.y + FourLanes{zero}, v.z + FourLanes{zero}});
     store_any(&x.t[k].element, kT * load_four(x.reciprocal + k));
     behind = a;
 }

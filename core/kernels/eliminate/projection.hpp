@@ -9,16 +9,16 @@ namespace holonomic::HOL_ISA {
 
 // Working arrays of a projection.
 struct Projection {
-    System s;
+    ChainSystem s;
     vec3 *v;               // of the atoms
     vec *left;             // of the bonds: what rounding leaves of the rates, then the multipliers that correct it
     const double *strain;  // or nullptr
     Projection(long n, Arena &arena, const double *of_box)
         : s(n, arena), v(reinterpret_cast<vec3 *>(arena.vecs(3 * (n + 1 + W)))), left(arena.vecs(n + 1)),
           strain(of_box) {}
-    Projection(const System &system, vec3 *velocities, vec *rates)
+    Projection(const ChainSystem &system, vec3 *velocities, vec *rates)
         : s(system), v(velocities), left(rates), strain(nullptr) {}
-    System correction() const { return System(s.D, left, s.L, s.pivots); }
+    ChainSystem correction() const { return ChainSystem(s.D, left, s.L, s.pivots); }
     // Lanes in which nothing has overflowed. The backward sweep carries what is not finite to the first bond, the
     // substitution of the rates to the last one.
     mask finite(long n) const { return HOL_ISA::finite(s.t[0] + left[n - 1]); }

@@ -32,7 +32,7 @@ struct Summary {
 };
 
 // What the elimination keeps of a bond for the substitution: u = y / P, the multiplier of the joint behind it, f / P.
-struct Kept {
+struct SegmentBond {
     vec u, l, fP;
 };
 
@@ -41,14 +41,14 @@ constexpr int64_t bonds_past_cache = 262144;
 
 struct SegmentStore {
     Summary *summary;  // of all blocks; inside a molecule one more, for the separator behind the last segment
-    Kept *kept;
+    SegmentBond *kept;
     bool past_cache;
     SegmentStore(double *store, const Cut &cut, int64_t block)
         : summary(reinterpret_cast<Summary *>(store) + block),
-          kept(reinterpret_cast<Kept *>(reinterpret_cast<Summary *>(store) + cut.blocks + cut.inside) +
+          kept(reinterpret_cast<SegmentBond *>(reinterpret_cast<Summary *>(store) + cut.blocks + cut.inside) +
                cut.first_row(block)),
           past_cache(cut.n_bonds + cut.bonds_behind - W * cut.first_row(block) > bonds_past_cache) {}
-    HOL_FORCED void keep_bond(long k, const Kept &bond) const {
+    HOL_FORCED void keep_bond(long k, const SegmentBond &bond) const {
         if (!past_cache) {
             kept[k] = bond;
             return;
@@ -62,7 +62,7 @@ struct SegmentStore {
 static inline int64_t long_bytes(int64_t n_bonds) {
     const Cut cut(n_bonds);
     return cut.blocks * static_cast<int64_t>(sizeof(Summary)) +
-           cut.first_row(cut.blocks) * static_cast<int64_t>(sizeof(Kept));
+           cut.first_row(cut.blocks) * static_cast<int64_t>(sizeof(SegmentBond));
 }
 
 // Products of six pivots, of which a consists after four bonds, underflow where the reciprocal of four of them is not
@@ -72,7 +72,7 @@ constexpr double largest_reciprocal_of_four = 1e190, largest_reciprocal_of_one =
 // The elimination of the inner bonds of W segments, a bond at a time.
 struct Elimination {
     vec q;            // of the bond that is to be eliminated
-    Column e, ac;     // E = A / F; a and c, in the same units of 1 / F
+    Fraction e, ac;   // E = A / F; a and c, in the same units of 1 / F
     vec rF, f, y, T;  // 1 / F; f is in its units, too
     vec w_max, q_max, margin;
     vec largest_rF, least_rF;
@@ -80,7 +80,7 @@ struct Elimination {
 
 // From a separator and the bond behind it, whose right-hand side is b1.
 template <bool uniform>
-HOL_INLINE void start(Elimination &e, const Block &block, vec q0, const Joint &j, vec b1) {
+HOL_INLINE void start(Elimination &e, const Block &block, vec q0, const JointProducts &j, vec b1) {
     const vec w = w_at<uniform>(block, 1);
     e.q = j.q;
     e.e = {w * e.q, splat(1.0)};
@@ -120,7 +120,7 @@ struct Settled {
 
 // Eliminates bond k; j is the joint behind it and b1 the right-hand side behind that. ragged: lanes may end there.
 template <bool uniform, bool extended>
-HOL_INLINE void step(Elimination &e, const Block &block, const SegmentStore &x, long k, const Joint &j, vec b1,
+HOL_INLINE void step(Elimination &e, const Block &block, const SegmentStore &x, long k, const JointProducts &j, vec b1,
                      bool ragged) {
     const vec w = w_at<uniform>(block, k + 1);
     const vec wq = w * e.q, F1 = e.e.next(wq), c1 = e.ac.next(wq);
@@ -184,7 +184,7 @@ HOL_NOINLINE void eliminate(const SegmentBlock &s, const Reader &in, const Separ
             for (; k >= group && k < grouped && k < end; k += group) {
                 const vec3 *const d = D + (k - k0);  // bonds k - 1, k ..
                 const vec *const b = B + (k - k0);
-                Joint j[group];
+                JointProducts j[group];
                 plain_joints<group>(source, k - 1, d, j);
                 E0 = e.e.A;
 #pragma GCC unroll 8
@@ -198,7 +198,7 @@ HOL_NOINLINE void eliminate(const SegmentBlock &s, const Reader &in, const Separ
             const vec3 *const d = D + (k - k0), *const l = extended ? low + (k - k0) : nullptr;
             const vec *const b = B + (k - k0);
             const bool alone = k >= grouped;  // else of the first group
-            Joint j;
+            JointProducts j;
             if (k == 0) {
                 x.summary->q = dot(d[1], d[1]);
                 x.summary->b = b[0];
@@ -249,9 +249,9 @@ HOL_NOINLINE void eliminate(const SegmentBlock &s, const Reader &in, const Separ
 // q_{k+1} c'.
 //
 // It reaches c, too, and there no test of the segment's own E sees it: a light atom in a straight joint just behind the
-// separator, say. Seen from the far end, c is a remainder E' as any other, and its error at most 2 eps sqrt(w_max q_s
-// c), q_s being the separator's. It is harmless where that is below join_tolerance sum, `sum` being what c is added to,
-// c itself included, or times `factor`. With equal masses c >= w q_s / n, which is enough.
+// separator, say. Seen from the far end, c is an effective inverse mass E' as any other, and its error at most 2 eps
+// sqrt(w_max q_s c), q_s being the separator's. It is harmless where that is below join_tolerance sum, `sum` being what
+// c is added to, c itself included, or times `factor`. With equal masses c >= w q_s / n, which is enough.
 HOL_INLINE bool is_flagged_join(const Summary &s, int i, double S, double sum, double factor) {
     constexpr double most = join_tolerance * join_tolerance;
     return !(4 * s.a[i] * s.span[i] * s.c[i] <= most * S * S) ||

@@ -12,7 +12,7 @@ namespace holonomic::HOL_ISA {
 // value_out[bond]. Either may be absent. For blocks in which all lanes are used, good and calm(), with
 // L[n] = 0.
 template <Update update>
-HOL_NOINLINE void substitute_and_store(const Block &block, const System &s, const Packed &out, double *value_out,
+HOL_NOINLINE void substitute_and_store(const Block &block, const ChainSystem &s, const Packed &out, double *value_out,
                                        vec factor) {
 #if HOL_FOURS
     if (out.lane[0]) {

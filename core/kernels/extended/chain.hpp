@@ -54,7 +54,7 @@ constexpr int64_t chain_scratch_bytes(int64_t n_bonds) {
 // chain_scratch_bytes(), aligned to 64.
 HOL_NOINLINE bool chain_positions(const PositionsCall &call, const Lane &chain, double *scratch, Tally &tally) {
     if (chain.n_bonds > ChainPlan::most) return false;
-    Memory memory = {reinterpret_cast<char *>(scratch)};
+    ByteArena memory = {reinterpret_cast<char *>(scratch)};
     ChainPlan &of = *memory.take<ChainPlan>(1);
     of.set(chain);
     Tally own = empty_tally();

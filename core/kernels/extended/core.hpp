@@ -22,7 +22,7 @@ struct Core {
     double *size_of_diagonal, *size;
 };
 
-HOL_NOINLINE Core take_core(const ExtendedPlan &plan, bool mixed, Memory &memory) {
+HOL_NOINLINE Core take_core(const ExtendedPlan &plan, bool mixed, ByteArena &memory) {
     Core x;
     x.plan = &plan;
     x.mixed = mixed;

@@ -20,7 +20,7 @@ struct Graph {
     Core core;
 };
 
-HOL_NOINLINE Graph take_graph(const ExtendedPlan &plan, const Wide3 *D, const Wide3 *B, Memory &memory) {
+HOL_NOINLINE Graph take_graph(const ExtendedPlan &plan, const Wide3 *D, const Wide3 *B, ByteArena &memory) {
     Graph x;
     x.D = D;
     x.B = B;
@@ -46,7 +46,7 @@ HOL_NOINLINE bool eliminate_children(const ExtendedPlan &plan, Joint &x, int32_t
 }
 
 // The same table as of a tree (many.hpp): pivots of the children, and what is offered to the bond above.
-HOL_NOINLINE bool reduce_many(const Molecule &m, const Graph &g, Joint &x, int32_t i, int32_t &bad) {
+HOL_NOINLINE bool reduce_many(const ScaledMolecule &m, const Graph &g, Joint &x, int32_t i, int32_t &bad) {
     const ExtendedPlan &plan = m.plan;
     const int32_t *const arms = plan.arms + plan.arm_start[i];
     bool all = true;
@@ -66,7 +66,7 @@ HOL_NOINLINE bool reduce_many(const Molecule &m, const Graph &g, Joint &x, int32
 }
 
 // Adds what atom i gives to the elements of its core bonds, once its children are eliminated.
-HOL_NOINLINE void add_to_core(const Molecule &m, const Graph &g, const Joint &x, int32_t i, const Wide *L) {
+HOL_NOINLINE void add_to_core(const ScaledMolecule &m, const Graph &g, const Joint &x, int32_t i, const Wide *L) {
     const int32_t *const arms = m.plan.arms + m.plan.arm_start[i];
     for (int e = 0; e < x.n; ++e) {
         if (m.plan.place[arms[e]] < 0) continue;
@@ -89,7 +89,7 @@ HOL_NOINLINE void add_to_core(const Molecule &m, const Graph &g, const Joint &x,
 }
 
 // Eliminates the children of atom i: all of them for its other arms, and its siblings for each child.
-HOL_NOINLINE bool factorize_joint(const Molecule &m, const Graph &g, Joint &x, int32_t i, int32_t &bad) {
+HOL_NOINLINE bool factorize_joint(const ScaledMolecule &m, const Graph &g, Joint &x, int32_t i, int32_t &bad) {
     const ExtendedPlan &plan = m.plan;
     const int32_t *const arms = plan.arms + plan.arm_start[i];
     Wide *const L = g.L + plan.table_start[i];
@@ -123,7 +123,7 @@ HOL_NOINLINE bool factorize_joint(const Molecule &m, const Graph &g, Joint &x, i
 }
 
 // The same, with what is lost at this atom, and has been on the way to it, counted apart: the core multiplies it.
-HOL_NOINLINE bool factorize_atom(const Molecule &m, const Graph &g, Joint &x, int32_t i, int32_t &bad) {
+HOL_NOINLINE bool factorize_atom(const ScaledMolecule &m, const Graph &g, Joint &x, int32_t i, int32_t &bad) {
     const double so_far = x.loss.largest;
     x.loss.largest = 1;
     for (int64_t a = m.plan.arm_start[i]; a < m.plan.arm_start[i + 1]; ++a)
@@ -135,7 +135,7 @@ HOL_NOINLINE bool factorize_atom(const Molecule &m, const Graph &g, Joint &x, in
 }
 
 // Returns false if a bond depends on others, and sets its number.
-HOL_NOINLINE bool factorize(const Molecule &m, const Graph &g, Joint &x, int32_t &bad) {
+HOL_NOINLINE bool factorize(const ScaledMolecule &m, const Graph &g, Joint &x, int32_t &bad) {
     const ExtendedPlan &plan = m.plan;
     clear(g.core);
     for (int32_t s = 0; s < plan.n_hanging; ++s)
@@ -147,7 +147,7 @@ HOL_NOINLINE bool factorize(const Molecule &m, const Graph &g, Joint &x, int32_t
 
 // Sums of y over the children of an atom of many arms, to each(e, sum): for other arms all, for a child its siblings.
 template <class Each>
-HOL_NOINLINE void sum_many(const Molecule &m, const Graph &g, int32_t i, const Each &each) {
+HOL_NOINLINE void sum_many(const ScaledMolecule &m, const Graph &g, int32_t i, const Each &each) {
     const int32_t *const arms = m.plan.arms + m.plan.arm_start[i];
     sum_many(
         g.L + m.plan.table_start[i], m.plan.arm_start[i + 1] - m.plan.arm_start[i], -1,
@@ -156,7 +156,7 @@ HOL_NOINLINE void sum_many(const Molecule &m, const Graph &g, int32_t i, const E
 }
 
 // Takes what the children of atom i pass on from y of its other arms.
-HOL_NOINLINE void pass_on(const Molecule &m, const Graph &g, int32_t i) {
+HOL_NOINLINE void pass_on(const ScaledMolecule &m, const Graph &g, int32_t i) {
     const ExtendedPlan &plan = m.plan;
     const int32_t *const arms = plan.arms + plan.arm_start[i];
     const int n = plan.arm_start[i + 1] - plan.arm_start[i];
@@ -172,7 +172,7 @@ HOL_NOINLINE void pass_on(const Molecule &m, const Graph &g, int32_t i) {
 }
 
 // Finds t of the children of atom i from t of its other arms.
-HOL_NOINLINE void solve_children(const Molecule &m, const Graph &g, int32_t i, Wide *t) {
+HOL_NOINLINE void solve_children(const ScaledMolecule &m, const Graph &g, int32_t i, Wide *t) {
     const ExtendedPlan &plan = m.plan;
     const int32_t *const arms = plan.arms + plan.arm_start[i];
     const int n = plan.arm_start[i + 1] - plan.arm_start[i];
@@ -195,7 +195,7 @@ HOL_NOINLINE void solve_children(const Molecule &m, const Graph &g, int32_t i, W
 }
 
 // Solves A t = b with the factors.
-HOL_NOINLINE void solve(const Molecule &m, const Graph &g, const Wide *b, Wide *t) {
+HOL_NOINLINE void solve(const ScaledMolecule &m, const Graph &g, const Wide *b, Wide *t) {
     const ExtendedPlan &plan = m.plan;
     for (int32_t k = 0; k < plan.n_bonds; ++k) g.y[k] = b[k];
     for (int32_t s = 0; s < plan.n_hanging; ++s) pass_on(m, g, plan.hanging[s]);

@@ -173,10 +173,10 @@ HOL_NOINLINE bool eliminate_arms(Joint &x) {
 }
 
 // The arms of a joint as they stand on the two sides of <x^T, y^T>.
-struct Sides {
+struct ArmSides {
     const Wide3 *D, *B, *XD, *XB;
     const double *sD, *sB, *sXD, *sXB;
-    HOL_STATIC Sides of(const Joint &j, bool swapped) {
+    HOL_STATIC ArmSides of(const Joint &j, bool swapped) {
         if (swapped) return {j.B, j.D, j.XB, j.XD, j.sB, j.sD, j.sXB, j.sXD};
         return {j.D, j.B, j.XD, j.XB, j.sD, j.sB, j.sXD, j.sXB};
     }
@@ -184,7 +184,7 @@ struct Sides {
 
 // Returns the sizes of what gram_sum() adds up, component by component: 0 for zeros of vectors along the axes.
 HOL_NOINLINE double gram_size(const Joint &j, int x, int y, int skip, bool swapped) {
-    const Sides s = Sides::of(j, swapped);
+    const ArmSides s = ArmSides::of(j, swapped);
     const int n = j.n, wanted = j.n_rigid - (skip >= 0 && j.rigid[skip] ? 1 : 0);
     double size = wanted == 0 ? size_of_dot(s.D[x], s.B[y]) : 0;
     for (int o = 0; o < j.n_others; ++o) {
@@ -208,7 +208,7 @@ HOL_NOINLINE double gram_size(const Joint &j, int x, int y, int skip, bool swapp
 // all rigid arms but `in`, which is x or y or neither; no set holds `skip`. x is on the side of D and y on that of B,
 // or the other way round.
 HOL_NOINLINE Wide gram_sum(const Joint &j, int x, int y, int skip, bool swapped) {
-    const Sides s = Sides::of(j, swapped);
+    const ArmSides s = ArmSides::of(j, swapped);
     const int n = j.n, wanted = j.n_rigid - (skip >= 0 && j.rigid[skip] ? 1 : 0);
     Wide sum = wanted == 0 ? dot(s.D[x], s.B[y]) : wide(0);
     double size = wanted == 0 ? s.sD[x] * s.sB[y] : 0;

@@ -7,7 +7,7 @@
 namespace holonomic::HOL_ISA::extended {
 
 // Finds d.(w_j f_j - w_i f_i) + |v_j - v_i|^2 of each bond, both terms in the solver's units.
-static void force_terms(const Molecule &m, const ForcesCall &call, Wide *b) {
+static void force_terms(const ScaledMolecule &m, const ForcesCall &call, Wide *b) {
     for (int32_t k = 0; k < m.plan.n_bonds; ++k) {
         const int32_t i = m.plan.atom_i[k], j = m.plan.atom_j[k];
         b[k] = wide(0);
@@ -26,8 +26,8 @@ static void force_terms(const Molecule &m, const ForcesCall &call, Wide *b) {
 }
 
 void forces(const ForcesCall &call, const ExtendedPlan &plan, const MoleculeLane &lane, double *scratch, Tally &tally) {
-    Memory memory = {reinterpret_cast<char *>(scratch)};
-    Solution x(plan, lane, memory);
+    ByteArena memory = {reinterpret_cast<char *>(scratch)};
+    ExtendedSolution x(plan, lane, memory);
     bool good = x.open(call.r, call.box, call.rescaled);
     if (good) {
         force_terms(x.m, call, x.b);
@@ -41,8 +41,8 @@ void forces(const ForcesCall &call, const ExtendedPlan &plan, const MoleculeLane
 }
 
 void solve(const SolveCall &call, const ExtendedPlan &plan, const MoleculeLane &lane, double *scratch, Tally &tally) {
-    Memory memory = {reinterpret_cast<char *>(scratch)};
-    Solution x(plan, lane, memory);
+    ByteArena memory = {reinterpret_cast<char *>(scratch)};
+    ExtendedSolution x(plan, lane, memory);
     bool good = x.open(call.r, call.box, call.rescaled);
     if (good) {
         // Z = 4 A and t = 2 lambda.
@@ -63,7 +63,7 @@ static Wide stretching_of(const double *s, const Wide3 &d) {
 }
 
 // d.(v_j - v_i) of each bond.
-static void rate_terms(const Molecule &m, const VelocitiesCall &call, Wide *b) {
+static void rate_terms(const ScaledMolecule &m, const VelocitiesCall &call, Wide *b) {
     for (int32_t k = 0; k < m.plan.n_bonds; ++k) {
         const int32_t i = m.plan.atom_i[k], j = m.plan.atom_j[k];
         Wide rate = dot(m.d[k], difference(read(call.v, m.lane, i), read(call.v, m.lane, j)));
@@ -74,9 +74,9 @@ static void rate_terms(const Molecule &m, const VelocitiesCall &call, Wide *b) {
 
 void velocities(const VelocitiesCall &call, const ExtendedPlan &plan, const MoleculeLane &lane, double *scratch,
                 Tally &tally) {
-    Memory memory = {reinterpret_cast<char *>(scratch)};
-    Solution x(plan, lane, memory);
-    const Molecule &m = x.m;
+    ByteArena memory = {reinterpret_cast<char *>(scratch)};
+    ExtendedSolution x(plan, lane, memory);
+    const ScaledMolecule &m = x.m;
     bool good = x.open(call.r, call.box, call.rescaled);
     if (good) {
         rate_terms(m, call, x.b);

@@ -16,12 +16,12 @@ HOL_NOINLINE double log_of_ratio(const Wide &removed, const Wide &pivot, const W
 }
 
 // Returns w d.d, summed over both ends of a bond.
-HOL_INLINE Wide full_diagonal(const Molecule &m, int32_t k) {
+HOL_INLINE Wide full_diagonal(const ScaledMolecule &m, int32_t k) {
     return (wide(m.w[m.plan.atom_i[k]]) + wide(m.w[m.plan.atom_j[k]])) * dot(m.d[k], m.d[k]);
 }
 
 // The same of an atom of many arms, all of which give way: with the sum rho B D^T over the children so far.
-HOL_NOINLINE Wide log_of_many(const Molecule &m, const Wide *up, Wide *F, Joint &x, int32_t i) {
+HOL_NOINLINE Wide log_of_many(const ScaledMolecule &m, const Wide *up, Wide *F, Joint &x, int32_t i) {
     const ExtendedPlan &plan = m.plan;
     const int32_t *const arms = plan.arms + plan.arm_start[i];
     Wide sum = wide(0), so_far[9] = {}, inverse[9];
@@ -50,7 +50,7 @@ HOL_NOINLINE Wide log_of_many(const Molecule &m, const Wide *up, Wide *F, Joint 
 }
 
 // Adds the logarithms of the children of atom i, one after the other. F gets what all of them take of its parent bond.
-HOL_NOINLINE Wide log_of_children(const Molecule &m, const Wide *up, Wide *F, Joint &x, Wide *l, int32_t i) {
+HOL_NOINLINE Wide log_of_children(const ScaledMolecule &m, const Wide *up, Wide *F, Joint &x, Wide *l, int32_t i) {
     const ExtendedPlan &plan = m.plan;
     const int32_t *const arms = plan.arms + plan.arm_start[i];
     Wide sum = wide(0);
@@ -82,7 +82,7 @@ HOL_NOINLINE Wide log_of_children(const Molecule &m, const Wide *up, Wide *F, Jo
     return sum;
 }
 
-HOL_NOINLINE Wide log_of_trees(const Molecule &m, const Wide *up, Joint &x, Memory memory) {
+HOL_NOINLINE Wide log_of_trees(const ScaledMolecule &m, const Wide *up, Joint &x, ByteArena memory) {
     Wide *const F = memory.take<Wide>(m.plan.n_bonds), *const l = memory.take<Wide>(m.plan.most_arms);
     Wide sum = wide(0);
     for (int32_t s = 0; s < m.plan.n_hanging; ++s) sum += log_of_children(m, up, F, x, l, m.plan.hanging[s]);
@@ -97,7 +97,7 @@ HOL_NOINLINE Wide log_of_core(const Core &x) {
     return sum;
 }
 
-HOL_NOINLINE Wide log_of_ring(const Molecule &m, const Ring &x) {
+HOL_NOINLINE Wide log_of_ring(const ScaledMolecule &m, const Ring &x) {
     Wide sum = wide(0);
     for (int32_t k = 0; k < x.n; ++k) {
         const int32_t bond = m.plan.ring[k];
@@ -108,14 +108,14 @@ HOL_NOINLINE Wide log_of_ring(const Molecule &m, const Ring &x) {
 }
 
 // Returns ln det Z~ of a molecule that has been factorized.
-HOL_NOINLINE Wide log_det(const Molecule &m, System &x, const Memory &memory) {
+HOL_NOINLINE Wide log_det(const ScaledMolecule &m, ExtendedSystem &x, const ByteArena &memory) {
     if (is_ring(m.plan)) return log_of_ring(m, x.ring);
     if (is_tree(m.plan)) return log_of_trees(m, x.tree.up, x.joint, memory);
     return log_of_trees(m, x.graph.up, x.joint, memory) + log_of_core(x.graph.core);
 }
 
 // Returns the sum of ln Z_kk, where Z_kk = 4 (w_i + w_j) d.d.
-HOL_NOINLINE Wide log_of_diagonal(const Molecule &m) {
+HOL_NOINLINE Wide log_of_diagonal(const ScaledMolecule &m) {
     constexpr double ln2 = 0.69314718055994530942;
     Wide sum = wide(0);
     for (int32_t k = 0; k < m.plan.n_bonds; ++k) {

@@ -9,7 +9,7 @@ namespace holonomic::HOL_ISA::extended {
 
 // Returns w_i times the sum of H_kl d_k x d_l over the other bonds l of atom i, for its arm a. All d point away from
 // it.
-static Wide3 weighed_normal(const Molecule &m, const Tree &tree, const Neighbours &x, int32_t i, int a) {
+static Wide3 weighed_normal(const ScaledMolecule &m, const Tree &tree, const Neighbours &x, int32_t i, int a) {
     const int32_t *const arms = m.plan.arms + m.plan.arm_start[i];
     const int n = m.plan.arm_start[i + 1] - m.plan.arm_start[i];
     if (n > most_arms && is_tree(m.plan)) {
@@ -25,7 +25,7 @@ static Wide3 weighed_normal(const Molecule &m, const Tree &tree, const Neighbour
 }
 
 // kT phi_k = kT d_k x (normals at both ends) / d_k.d_k turns bond k: its force on atom j, and minus that on atom i.
-static void fixman_force(const Molecule &m, const Tree &tree, const Neighbours &x, double kT, Wide3 *normal,
+static void fixman_force(const ScaledMolecule &m, const Tree &tree, const Neighbours &x, double kT, Wide3 *normal,
                          Wide3 *force) {
     const ExtendedPlan &plan = m.plan;
     for (int32_t k = 0; k < plan.n_bonds; ++k) normal[k] = Wide3{};
@@ -45,8 +45,8 @@ static void fixman_force(const Molecule &m, const Tree &tree, const Neighbours &
 }
 
 void metric(const MetricCall &call, const ExtendedPlan &plan, const MoleculeLane &lane, double *scratch, Tally &tally) {
-    Memory memory = {reinterpret_cast<char *>(scratch)};
-    Solution x(plan, lane, memory);
+    ByteArena memory = {reinterpret_cast<char *>(scratch)};
+    ExtendedSolution x(plan, lane, memory);
     if (!x.open(call.r, call.box, true)) {
         if (x.lacks_digits()) return quad_double::extended::metric(call, plan, lane, scratch, tally);
         return note_bad(lane.molecule, tally);

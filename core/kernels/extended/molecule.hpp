@@ -9,7 +9,7 @@
 namespace holonomic::HOL_ISA::extended {
 
 // Hands out scratch memory from front to back.
-struct Memory {
+struct ByteArena {
     char *next;
     template <class T>
     T *take(int64_t n) {
@@ -57,14 +57,14 @@ HOL_INLINE double power_below(double a) {
     return a;
 }
 
-struct Molecule {
+struct ScaledMolecule {
     const ExtendedPlan &plan;
     const MoleculeLane &lane;
     Wide3 *d;          // [n_bonds] from atom i to atom j, over `unit` of the bond
     double *unit;      // [n_bonds] a power of two
     double *w;         // [n_atoms] over mass_unit
     double mass_unit;  // a power of two
-    Molecule(const ExtendedPlan &p, const MoleculeLane &l, Memory &memory)
+    ScaledMolecule(const ExtendedPlan &p, const MoleculeLane &l, ByteArena &memory)
         : plan(p), lane(l), d(memory.take<Wide3>(p.n_bonds)), unit(memory.take<double>(p.n_bonds)),
           w(memory.take<double>(p.n_atoms)), mass_unit(1) {}
 
@@ -74,7 +74,7 @@ struct Molecule {
 };
 
 // Whether its units are ordinary ones (call.hpp), up to the rounding of exponents there.
-HOL_NOINLINE bool is_in_ordinary_units(const Molecule &m) {
+HOL_NOINLINE bool is_in_ordinary_units(const ScaledMolecule &m) {
     double longest = 0;
     for (int32_t k = 0; k < m.plan.n_bonds; ++k) longest = m.unit[k] > longest ? m.unit[k] : longest;
     constexpr double most_length = 2.0 * (1LL << most_ordinary_length), most_mass = 0x1p94;
@@ -83,7 +83,7 @@ HOL_NOINLINE bool is_in_ordinary_units(const Molecule &m) {
            m.mass_unit >= 1 / most_mass;
 }
 
-HOL_NOINLINE void load_masses(Molecule &m) {
+HOL_NOINLINE void load_masses(ScaledMolecule &m) {
     double largest = 0;
     for (int32_t i = 0; i < m.plan.n_atoms; ++i) largest = m.lane.w[i] > largest ? m.lane.w[i] : largest;
     m.mass_unit = largest > 0x1p-1000 ? power_below(largest) : 1;
@@ -91,11 +91,11 @@ HOL_NOINLINE void load_masses(Molecule &m) {
 }
 
 // Reads bond vectors from the caller's array. Returns false if one is zero or not finite.
-HOL_NOINLINE bool load_vectors(const Molecule &m, const AtomArray &r, const Box &box, Wide3 *d) {
+HOL_NOINLINE bool load_vectors(const ScaledMolecule &m, const AtomArray &r, const Box &box, Wide3 *d) {
     bool good = true;
     for (int32_t k = 0; k < m.plan.n_bonds; ++k) {
         d[k] = difference(read(r, m.lane, m.plan.atom_i[k]), read(r, m.lane, m.plan.atom_j[k]));
-        if (box.shape != Box::none) wrap(box, d[k]);
+        if (box.lattice != Box::none) wrap(box, d[k]);
         const double size = abs(d[k].x.hi) + abs(d[k].y.hi) + abs(d[k].z.hi);
         good = good && size > 0 && is_finite(size);
     }
@@ -108,7 +108,7 @@ HOL_INLINE double largest_component(const Wide3 &a) {
 }
 
 // Loads the molecule. Returns false if a bond is zero or not finite.
-HOL_NOINLINE bool load(Molecule &m, const AtomArray &r, const Box &box) {
+HOL_NOINLINE bool load(ScaledMolecule &m, const AtomArray &r, const Box &box) {
     load_masses(m);
     if (!load_vectors(m, r, box, m.d)) return false;
     for (int32_t k = 0; k < m.plan.n_bonds; ++k) {

@@ -13,7 +13,7 @@ struct Neighbours {
     Wide *lower, *pivot;  // of the core's inverse, where its factor has elements
 };
 
-HOL_NOINLINE Neighbours take_neighbours(const ExtendedPlan &plan, Memory &memory) {
+HOL_NOINLINE Neighbours take_neighbours(const ExtendedPlan &plan, ByteArena &memory) {
     Neighbours x;
     x.start = memory.take<int64_t>(plan.n_atoms + 1);
     x.start[0] = 0;
@@ -66,7 +66,7 @@ HOL_NOINLINE void invert(const Core &core, const Neighbours &x) {
 }
 
 // Goes from the arms of atom i that are no children to those that are.
-HOL_NOINLINE void hand_down(const Molecule &m, const Graph &g, const Neighbours &x, int32_t i) {
+HOL_NOINLINE void hand_down(const ScaledMolecule &m, const Graph &g, const Neighbours &x, int32_t i) {
     const ExtendedPlan &plan = m.plan;
     const int32_t *const arms = plan.arms + plan.arm_start[i];
     const int n = plan.arm_start[i + 1] - plan.arm_start[i];
@@ -100,7 +100,7 @@ HOL_NOINLINE void hand_down(const Molecule &m, const Graph &g, const Neighbours 
     }
 }
 
-HOL_NOINLINE void find_neighbours(const Molecule &m, const Graph &g, const Neighbours &x) {
+HOL_NOINLINE void find_neighbours(const ScaledMolecule &m, const Graph &g, const Neighbours &x) {
     const ExtendedPlan &plan = m.plan;
     invert(g.core, x);
     from_the_root(plan, [&](int32_t i) {
@@ -144,7 +144,7 @@ HOL_NOINLINE void find_neighbours(const ExtendedPlan &plan, const Ring &ring, co
     put(0, last, beside);
 }
 
-HOL_NOINLINE void find_neighbours(const Molecule &m, const System &system, const Neighbours &x) {
+HOL_NOINLINE void find_neighbours(const ScaledMolecule &m, const ExtendedSystem &system, const Neighbours &x) {
     const ExtendedPlan &plan = m.plan;
     if (is_tree(plan)) return find_neighbours(plan, system.tree, x);
     if (is_ring(plan)) return find_neighbours(plan, system.ring, x);

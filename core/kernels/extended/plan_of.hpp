@@ -2,12 +2,12 @@
 #pragma once
 
 #include "core/kernels/extended/molecule.hpp"
-#include "core/kernels/molecules/elimination_plan.hpp"
+#include "core/plan/elimination.hpp"
 
 namespace holonomic::HOL_ISA::extended {
 
 // Lists the bonds of each atom, ascending.
-HOL_NOINLINE void list_arms(ExtendedPlan &plan, Memory &memory) {
+HOL_NOINLINE void list_arms(ExtendedPlan &plan, ByteArena &memory) {
     int32_t *const start = memory.take<int32_t>(plan.n_atoms + 1), *const arms = memory.take<int32_t>(2 * plan.n_bonds);
     int64_t *const table = memory.take<int64_t>(plan.n_atoms + 1);
     for (int32_t i = 0; i <= plan.n_atoms; ++i) start[i] = 0;
@@ -33,7 +33,7 @@ HOL_NOINLINE void list_arms(ExtendedPlan &plan, Memory &memory) {
 }
 
 // Takes what extended_plan_bytes() says (scratch.hpp).
-HOL_NOINLINE ExtendedPlan plan_of(const EliminationPlan &s, Memory &memory) {
+HOL_NOINLINE ExtendedPlan plan_of(const EliminationPlan &s, ByteArena &memory) {
     ExtendedPlan plan = {};
     plan.n_atoms = s.n_atoms;
     plan.n_bonds = s.n_bonds;

@@ -8,8 +8,8 @@
 namespace holonomic::HOL_ISA::extended {
 
 // In the caller's units tau is T / (unit mass_unit). Atoms are displaced by w times the sum of T b.
-struct Projection {
-    Molecule m;  // m.d: reference bonds b
+struct PositionNewton {
+    ScaledMolecule m;  // m.d: reference bonds b
     Joint joint;
     Graph graph;
     Wide3 *D, *first;  // [n_bonds] new bonds as moved so far and as they came, in the unit of b
@@ -18,7 +18,7 @@ struct Projection {
     Wide *T, *change, *sigma;
     double error;   // largest |D.D - a^2| / a^2
     int32_t worst;  // its bond
-    Projection(const ExtendedPlan &plan, const MoleculeLane &lane, Memory &memory)
+    PositionNewton(const ExtendedPlan &plan, const MoleculeLane &lane, ByteArena &memory)
         : m(plan, lane, memory), joint(take_joint(plan.most_arms, true, memory)), D(memory.take<Wide3>(plan.n_bonds)),
           first(memory.take<Wide3>(plan.n_bonds)), x(memory.take<Wide3>(plan.n_atoms)),
           a2(memory.take<Wide>(plan.n_bonds)), T(memory.take<Wide>(plan.n_bonds)),
@@ -27,8 +27,8 @@ struct Projection {
     }
 };
 
-static bool load(Projection &p, const PositionsCall &call) {
-    Molecule &m = p.m;
+static bool load(PositionNewton &p, const PositionsCall &call) {
+    ScaledMolecule &m = p.m;
     if (!load(m, call.r_ref, call.box_ref) || !load_vectors(m, call.r, call.box, p.first)) return false;
     for (int32_t k = 0; k < m.plan.n_bonds; ++k) {
         const double a = m.lane.length[k] / m.unit[k];
@@ -39,8 +39,8 @@ static bool load(Projection &p, const PositionsCall &call) {
 }
 
 // Moves the bonds by T and finds what is left of D.D - a^2.
-static void move(Projection &p) {
-    const Molecule &m = p.m;
+static void move(PositionNewton &p) {
+    const ScaledMolecule &m = p.m;
     pulls(m, m.d, p.T, p.x);
     for (int32_t i = 0; i < m.plan.n_atoms; ++i) p.x[i] = m.w[i] * p.x[i];
     p.error = 0;
@@ -58,8 +58,8 @@ static void move(Projection &p) {
     }
 }
 
-static bool step(Projection &p) {
-    const Molecule &m = p.m;
+static bool step(PositionNewton &p) {
+    const ScaledMolecule &m = p.m;
     int32_t bad;
     if (!factorize(m, p.graph, p.joint, bad)) {
         if (is_tree(m.plan)) p.joint.loss.largest = __builtin_inf();  // it may be regular all the same
@@ -72,10 +72,10 @@ static bool step(Projection &p) {
     return is_finite(p.error);
 }
 
-enum Projected { projected_not, projected_untouched, projected };
+enum ProjectionResult { projected_not, projected_untouched, projected };
 
 // Returns the error |D.D - a^2| / a^2 that the coordinates carry. It is accepted.
-static double carried(const Projection &p, const PositionsCall &call) {
+static double carried(const PositionNewton &p, const PositionsCall &call) {
     double extent = 0, shortest = p.m.lane.length[0];
     for (int32_t i = 0; i < p.m.plan.n_atoms; ++i) {
         const Vector3<double> r = read(call.r, p.m.lane, i);
@@ -91,8 +91,8 @@ static double carried(const Projection &p, const PositionsCall &call) {
 // Newton's method that has lost its way: so many steps do not halve the smallest error.
 constexpr int64_t patience = 12;
 
-static Projected iterate(Projection &p, const PositionsCall &call, bool guess, int64_t &solves) {
-    const Molecule &m = p.m;
+static ProjectionResult iterate(PositionNewton &p, const PositionsCall &call, bool guess, int64_t &solves) {
+    const ScaledMolecule &m = p.m;
     const double accepted = carried(p, call), done = wanted_error(call);
     for (int32_t k = 0; k < m.plan.n_bonds; ++k) p.T[k] = wide(0);
     move(p);
@@ -121,13 +121,13 @@ static Projected iterate(Projection &p, const PositionsCall &call, bool guess, i
     return projected_not;
 }
 
-static void note_worst(const Projection &p, Tally &tally) {
+static void note_worst(const PositionNewton &p, Tally &tally) {
     if (take_worst(tally, p.error, p.m.lane.molecule)) tally.worst_bond = p.worst;
 }
 
 // Writes new positions and velocities. Returns false, with nothing written, if one would not be finite.
-static bool write_moves(const Projection &p, const PositionsCall &call) {
-    const Molecule &m = p.m;
+static bool write_moves(const PositionNewton &p, const PositionsCall &call) {
+    const ScaledMolecule &m = p.m;
     for (int pass = 0; pass < 2; ++pass)
         for (int32_t i = 0; i < m.plan.n_atoms; ++i) {
             if (!(m.w[i] > 0)) continue;
@@ -145,15 +145,15 @@ static bool write_moves(const Projection &p, const PositionsCall &call) {
 
 void positions(const PositionsCall &call, const ExtendedPlan &plan, const MoleculeLane &lane, double *scratch,
                Tally &tally) {
-    Memory memory = {reinterpret_cast<char *>(scratch)};
-    Projection p(plan, lane, memory);
-    Projected result = projected_not;
+    ByteArena memory = {reinterpret_cast<char *>(scratch)};
+    PositionNewton p(plan, lane, memory);
+    ProjectionResult result = projected_not;
     int64_t solves = 0;
     if (load(p, call) && (call.rescaled || is_in_ordinary_units(p.m))) {
         if (call.guess) result = iterate(p, call, true, solves);
         if (result == projected_not) result = iterate(p, call, false, solves);
     }
-    if (Solution::lacks_digits(plan, p.joint))
+    if (ExtendedSolution::lacks_digits(plan, p.joint))
         return quad_double::extended::positions(call, plan, lane, scratch, tally);
     if (result == projected_not || (result == projected && !write_moves(p, call)))
         return note_bad(lane.molecule, tally);

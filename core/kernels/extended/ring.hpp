@@ -17,7 +17,7 @@ struct Ring {
     Wide *y;               // [n]
 };
 
-HOL_NOINLINE Ring take_ring(const ExtendedPlan &plan, Memory &memory) {
+HOL_NOINLINE Ring take_ring(const ExtendedPlan &plan, ByteArena &memory) {
     Ring x;
     x.n = plan.n_bonds;
     x.backwards = memory.take<bool>(x.n);
@@ -33,7 +33,7 @@ HOL_NOINLINE Ring take_ring(const ExtendedPlan &plan, Memory &memory) {
 }
 
 // The atom between rows k - 1 and k.
-HOL_INLINE int32_t joint_atom(const Molecule &m, const Ring &x, int32_t k) {
+HOL_INLINE int32_t joint_atom(const ScaledMolecule &m, const Ring &x, int32_t k) {
     const int32_t bond = m.plan.ring[k];
     return x.backwards[k] ? m.plan.atom_j[bond] : m.plan.atom_i[bond];
 }
@@ -41,7 +41,7 @@ HOL_INLINE int32_t joint_atom(const Molecule &m, const Ring &x, int32_t k) {
 // Three points are refused as in line if the square of the sine is below this; so is a ring of bonds all in line.
 constexpr double straight = 1e-28;
 
-HOL_NOINLINE bool measure(const Molecule &m, const Ring &x) {
+HOL_NOINLINE bool measure(const ScaledMolecule &m, const Ring &x) {
     const ExtendedPlan &plan = m.plan;
     int32_t atom = plan.atom_i[plan.ring[0]];  // ring begins with bond 0, which leaves it at its atom_j
     double bent = 0;
@@ -70,7 +70,7 @@ HOL_NOINLINE bool measure(const Molecule &m, const Ring &x) {
     return bent > straight;
 }
 
-HOL_NOINLINE bool factorize(const Molecule &m, const Ring &x, int32_t &bad) {
+HOL_NOINLINE bool factorize(const ScaledMolecule &m, const Ring &x, int32_t &bad) {
     const int32_t last = x.n - 1;
     bad = m.plan.ring[last];
     if (!measure(m, x)) return false;
@@ -106,7 +106,7 @@ HOL_NOINLINE bool factorize(const Molecule &m, const Ring &x, int32_t &bad) {
     return x.P[last].hi > 0;
 }
 
-HOL_NOINLINE void solve(const Molecule &m, const Ring &x, const Wide *b, Wide *t) {
+HOL_NOINLINE void solve(const ScaledMolecule &m, const Ring &x, const Wide *b, Wide *t) {
     const int32_t last = x.n - 1;
     for (int32_t k = 0; k < x.n; ++k) x.y[k] = b[m.plan.ring[k]] / x.length[k];
     for (int32_t k = 0; k < last; ++k) {

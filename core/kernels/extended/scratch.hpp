@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/kernels/extended/plan.hpp"
-#include "core/kernels/molecules/elimination_plan.hpp"
+#include "core/plan/elimination.hpp"
 
 namespace holonomic {
 

@@ -9,7 +9,7 @@ namespace holonomic::HOL_ISA::extended {
 
 // Turns t into the caller's units. Returns false if one is no number. With d = unit d' and w = mass_unit w', both sides
 // of an equation are divided by mass_unit / unit.
-HOL_NOINLINE bool to_callers_units(const Molecule &m, Wide *t) {
+HOL_NOINLINE bool to_callers_units(const ScaledMolecule &m, Wide *t) {
     bool good = true;
     for (int32_t k = 0; k < m.plan.n_bonds; ++k) {
         t[k] = over(t[k], m.unit[k]);
@@ -19,18 +19,18 @@ HOL_NOINLINE bool to_callers_units(const Molecule &m, Wide *t) {
 }
 
 // The bond vectors in the caller's units: sums over bonds need one unit.
-HOL_NOINLINE void restore_vectors(const Molecule &m) {
+HOL_NOINLINE void restore_vectors(const ScaledMolecule &m) {
     for (int32_t k = 0; k < m.plan.n_bonds; ++k) m.d[k] = m.unit[k] * m.d[k];
 }
 
-HOL_NOINLINE void write_multipliers(const Molecule &m, const Wide *t, double *lambda, double *tension) {
+HOL_NOINLINE void write_multipliers(const ScaledMolecule &m, const Wide *t, double *lambda, double *tension) {
     for (int32_t k = 0; k < m.plan.n_bonds; ++k) {
         if (lambda) lambda[m.lane.first_bond + k] = 0.5 * rounded(t[k]) + 0.0;
         if (tension) tension[m.lane.first_bond + k] = rounded(t[k] * square_root(dot(m.d[k], m.d[k]))) + 0.0;
     }
 }
 
-HOL_NOINLINE void add_virial(const Molecule &m, const Wide3 *d, const Wide *t, double factor, Tally &tally) {
+HOL_NOINLINE void add_virial(const ScaledMolecule &m, const Wide3 *d, const Wide *t, double factor, Tally &tally) {
     Wide s[6] = {};
     for (int32_t k = 0; k < m.plan.n_bonds; ++k) {
         const Wide3 p = t[k] * d[k];
@@ -45,7 +45,7 @@ HOL_NOINLINE void add_virial(const Molecule &m, const Wide3 *d, const Wide *t, d
 }
 
 // Writes the forces of all atoms, but leaves those of fixed atoms that other molecules share to core.
-HOL_NOINLINE void write_forces(const Molecule &m, const AtomArray &g, bool add, const Wide3 *pull) {
+HOL_NOINLINE void write_forces(const ScaledMolecule &m, const AtomArray &g, bool add, const Wide3 *pull) {
     for (int32_t i = 0; i < m.plan.n_atoms; ++i) {
         if (m.lane.shared && m.lane.shared[i]) continue;
         Vector3<double> value = rounded(pull[i]);
@@ -57,7 +57,7 @@ HOL_NOINLINE void write_forces(const Molecule &m, const AtomArray &g, bool add, 
     }
 }
 
-HOL_NOINLINE bool finite_pulls(const Molecule &m, const Wide3 *pull) {
+HOL_NOINLINE bool finite_pulls(const ScaledMolecule &m, const Wide3 *pull) {
     bool good = true;
     for (int32_t i = 0; i < m.plan.n_atoms; ++i) good = good && is_finite(rounded(pull[i]));
     return good;
@@ -65,11 +65,11 @@ HOL_NOINLINE bool finite_pulls(const Molecule &m, const Wide3 *pull) {
 
 // Loads and factorizes a molecule, then finds t in the caller's units, and its pulls on the atoms. Both steps return
 // false if the molecule is bad.
-struct Solution {
-    Molecule m;
-    System system;
+struct ExtendedSolution {
+    ScaledMolecule m;
+    ExtendedSystem system;
     Wide *b, *t;
-    Solution(const ExtendedPlan &plan, const MoleculeLane &lane, Memory &memory)
+    ExtendedSolution(const ExtendedPlan &plan, const MoleculeLane &lane, ByteArena &memory)
         : m(plan, lane, memory), system(take_system(m, memory)), b(memory.take<Wide>(plan.n_bonds)),
           t(memory.take<Wide>(plan.n_bonds)) {}
     // A molecule of which a pivot seems to vanish may be regular all the same; more digits say so. Those of a ring are

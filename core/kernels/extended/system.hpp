@@ -10,7 +10,7 @@ namespace holonomic::HOL_ISA::extended {
 HOL_INLINE bool is_tree(const ExtendedPlan &plan) { return plan.n_core == 0; }
 HOL_INLINE bool is_ring(const ExtendedPlan &plan) { return plan.ring != nullptr; }
 
-struct System {
+struct ExtendedSystem {
     Joint joint;
     Tree tree;            // one of the three
     Ring ring;            //
@@ -20,8 +20,8 @@ struct System {
     int32_t bad;          // a bond that depends on others, where factorize() fails
 };
 
-HOL_NOINLINE System take_system(const Molecule &m, Memory &memory) {
-    System x = {};
+HOL_NOINLINE ExtendedSystem take_system(const ScaledMolecule &m, ByteArena &memory) {
+    ExtendedSystem x = {};
     x.bad = -1;
     x.joint = take_joint(m.plan.most_arms, false, memory);
     x.rest = memory.take<Wide>(m.plan.n_bonds);
@@ -36,14 +36,14 @@ HOL_NOINLINE System take_system(const Molecule &m, Memory &memory) {
     return x;
 }
 
-HOL_NOINLINE bool factorize(const Molecule &m, System &x) {
+HOL_NOINLINE bool factorize(const ScaledMolecule &m, ExtendedSystem &x) {
     if (is_tree(m.plan)) return factorize(m, x.tree, x.joint, x.bad);
     if (is_ring(m.plan)) return factorize(m, x.ring, x.bad);
     return factorize(m, x.graph, x.joint, x.bad);
 }
 
 // Finds the pull on each atom: the sum over its bonds of t times the vector away from it, times the bond's unit of t.
-HOL_NOINLINE void pulls(const Molecule &m, const Wide3 *d, const Wide *t, Wide3 *pull) {
+HOL_NOINLINE void pulls(const ScaledMolecule &m, const Wide3 *d, const Wide *t, Wide3 *pull) {
     for (int32_t i = 0; i < m.plan.n_atoms; ++i) pull[i] = Wide3{};
     for (int32_t k = 0; k < m.plan.n_bonds; ++k) {
         const Wide3 p = t[k] * d[k];
@@ -53,7 +53,7 @@ HOL_NOINLINE void pulls(const Molecule &m, const Wide3 *d, const Wide *t, Wide3 
 }
 
 // Finds rest = b - A t from the accelerations of the atoms.
-HOL_NOINLINE void residual(const Molecule &m, const System &x, const Wide *b, const Wide *t) {
+HOL_NOINLINE void residual(const ScaledMolecule &m, const ExtendedSystem &x, const Wide *b, const Wide *t) {
     pulls(m, m.d, t, x.pull);
     for (int32_t k = 0; k < m.plan.n_bonds; ++k) {
         const int32_t i = m.plan.atom_i[k], j = m.plan.atom_j[k];
@@ -63,7 +63,7 @@ HOL_NOINLINE void residual(const Molecule &m, const System &x, const Wide *b, co
 
 // Solves A t = b. Hanging trees beside cycles are eliminated from one side alone, which may lose digits. So the
 // solution is refined until a correction changes nothing that is kept. If none is as small, that is a loss.
-HOL_NOINLINE void solve(const Molecule &m, const System &x, const Wide *b, Wide *t) {
+HOL_NOINLINE void solve(const ScaledMolecule &m, const ExtendedSystem &x, const Wide *b, Wide *t) {
     if (is_tree(m.plan)) return solve(m, x.tree, b, t);
     if (is_ring(m.plan)) return solve(m, x.ring, b, t);
     solve(m, x.graph, b, t);

@@ -8,7 +8,7 @@
 
 namespace holonomic::HOL_ISA::extended {
 
-HOL_NOINLINE Joint take_joint(int32_t most, bool mixed, Memory &memory) {
+HOL_NOINLINE Joint take_joint(int32_t most, bool mixed, ByteArena &memory) {
     const int64_t n = most, pairs = n > most_arms ? 0 : n * n;
     Joint x = {};
     x.mixed = mixed;
@@ -29,7 +29,7 @@ HOL_NOINLINE Joint take_joint(int32_t most, bool mixed, Memory &memory) {
 }
 
 // The bonds of atom i, pointing away from it.
-HOL_NOINLINE void open_joint(const Molecule &m, const Wide3 *D, const Wide3 *B, int32_t i, Joint &x) {
+HOL_NOINLINE void open_joint(const ScaledMolecule &m, const Wide3 *D, const Wide3 *B, int32_t i, Joint &x) {
     const ExtendedPlan &plan = m.plan;
     x.n = plan.arm_start[i + 1] - plan.arm_start[i];
     x.w = m.w[i];
@@ -64,7 +64,7 @@ struct Tree {
     Wide *y_up, *y_down;  // [n_bonds] what a solve sends
 };
 
-HOL_NOINLINE Tree take_tree(const ExtendedPlan &plan, Memory &memory) {
+HOL_NOINLINE Tree take_tree(const ExtendedPlan &plan, ByteArena &memory) {
     Tree x;
     x.up = memory.take<Wide>(plan.n_bonds);
     x.down = memory.take<Wide>(plan.n_bonds);
@@ -89,7 +89,7 @@ HOL_INLINE bool from_the_root(const ExtendedPlan &plan, const Body &body) {
 }
 
 // Message of atom i along its arm e.
-HOL_NOINLINE bool send(const Molecule &m, const Tree &tree, Joint &x, int32_t i, int e, Wide &E, int32_t &bad) {
+HOL_NOINLINE bool send(const ScaledMolecule &m, const Tree &tree, Joint &x, int32_t i, int e, Wide &E, int32_t &bad) {
     const int32_t *const arms = m.plan.arms + m.plan.arm_start[i];
     if (!eliminate_others(x, e)) {
         bad = arms[stiffest(x)];
@@ -101,7 +101,7 @@ HOL_NOINLINE bool send(const Molecule &m, const Tree &tree, Joint &x, int32_t i,
 }
 
 // Messages of atom i along all its arms but its parent's, or along that one alone.
-HOL_NOINLINE bool send_many(const Molecule &m, const Tree &tree, Joint &x, int32_t i, bool up, int32_t &bad) {
+HOL_NOINLINE bool send_many(const ScaledMolecule &m, const Tree &tree, Joint &x, int32_t i, bool up, int32_t &bad) {
     const int32_t *const arms = m.plan.arms + m.plan.arm_start[i];
     bool all = true;
     x.n_others = 0;
@@ -117,7 +117,7 @@ HOL_NOINLINE bool send_many(const Molecule &m, const Tree &tree, Joint &x, int32
 }
 
 // Returns false if a bond depends on others, and sets its number.
-HOL_NOINLINE bool factorize(const Molecule &m, const Tree &tree, Joint &x, int32_t &bad) {
+HOL_NOINLINE bool factorize(const ScaledMolecule &m, const Tree &tree, Joint &x, int32_t &bad) {
     const ExtendedPlan &plan = m.plan;
     for (int32_t s = 0; s < plan.n_hanging; ++s) {
         const int32_t i = plan.hanging[s], parent = plan.parent[i];
@@ -157,7 +157,8 @@ HOL_NOINLINE bool factorize(const Molecule &m, const Tree &tree, Joint &x, int32
 
 // Right-hand sides behind the arms of an atom of many, as they pass over it, to each(e, sum); or those behind one arm.
 template <class Each>
-HOL_NOINLINE void pass_many(const Molecule &m, const Tree &tree, const Wide *b, int32_t i, int only, const Each &each) {
+HOL_NOINLINE void pass_many(const ScaledMolecule &m, const Tree &tree, const Wide *b, int32_t i, int only,
+                            const Each &each) {
     const ExtendedPlan &plan = m.plan;
     const int32_t *const arms = plan.arms + plan.arm_start[i];
     const auto outward = [&](int a) { return m.outward(m.d, arms[a], i); };
@@ -182,7 +183,7 @@ HOL_NOINLINE Wide passed(const ExtendedPlan &plan, const Tree &tree, const Wide 
 }
 
 // Solves A t = b.
-HOL_NOINLINE void solve(const Molecule &m, const Tree &tree, const Wide *b, Wide *t) {
+HOL_NOINLINE void solve(const ScaledMolecule &m, const Tree &tree, const Wide *b, Wide *t) {
     const ExtendedPlan &plan = m.plan;
     for (int32_t s = 0; s < plan.n_hanging; ++s) {
         const int32_t i = plan.hanging[s];

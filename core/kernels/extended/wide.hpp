@@ -4,7 +4,7 @@
 
 #include "core/kernels/arithmetic/exact.hpp"
 #ifdef HOL_QUAD_DOUBLE
-#include "core/kernels/extended/four.hpp"
+#include "core/kernels/extended/quad_double.hpp"
 #endif
 
 namespace holonomic::HOL_ISA {
@@ -12,8 +12,8 @@ namespace holonomic::HOL_ISA {
 #ifdef HOL_QUAD_DOUBLE
 
 constexpr bool is_quad_double = true;
-typedef Four Wide;
-HOL_INLINE Wide wide(double a) { return as_four(a); }
+typedef QuadDouble Wide;
+HOL_INLINE Wide wide(double a) { return as_quad_double(a); }
 
 #else
 

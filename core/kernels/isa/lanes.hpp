@@ -1,4 +1,4 @@
-// Lanes: W doubles that are worked on at once, with one chain, or one piece of a chain, in each. First what the
+// Lanes: W doubles that are worked on at once, with one chain, or one part of a chain, in each. First what the
 // compiler can do with a vector of them whatever the instruction set is, then transposition, then what each set has of
 // its own.
 #pragma once

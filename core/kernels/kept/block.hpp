@@ -26,8 +26,8 @@ HOL_INLINE vec *pivots(const double *block, long n) { return multipliers(block, 
 HOL_INLINE vec *rows(const double *block, long n, long c) { return pivots(block, n) + n + 3 * W * c; }
 
 // A system over a kept block, with right-hand sides elsewhere.
-HOL_INLINE System system(const double *block, long n, vec *t) {
-    return System(bonds(block), t, multipliers(block, n), pivots(block, n));
+HOL_INLINE ChainSystem system(const double *block, long n, vec *t) {
+    return ChainSystem(bonds(block), t, multipliers(block, n), pivots(block, n));
 }
 
 }  // namespace holonomic::HOL_ISA::kept

@@ -20,8 +20,8 @@ static void leave(const Block &block, mask which, unsigned char *left) {
 }
 
 // Lanes that plain products can't answer for get those of compensated ones.
-static mask keep_extended(const Block &block, const Reader &in, const System &s, mask which, Arena arena) {
-    const System extended(block.n, arena);
+static mask keep_extended(const Block &block, const Reader &in, const ChainSystem &s, mask which, Arena arena) {
+    const ChainSystem extended(block.n, arena);
     in.load(0, block.n, extended.D, extended.D_low, extended.t);
     block.uniform_w ? forward_extended<true>(block, extended) : forward_extended<false>(block, extended);
     for (long k = 0; k < block.n; ++k) {
@@ -39,7 +39,7 @@ HOL_INLINE long chunk_at(const Block &block, long k0) {
 }
 
 // Bonds as they stand in memory: to transpose twice changes nothing.
-static void keep_rows(const Block &block, const System &s, double *to) {
+static void keep_rows(const Block &block, const ChainSystem &s, double *to) {
     for (long k0 = 0; k0 < block.n; k0 += W) {
         const long from = chunk_at(block, k0);
         if (from < 0) continue;
@@ -55,7 +55,7 @@ static void keep_block(const Block &block, const Lane *lane, const KeepCall &cal
     double *const to = call.kept->room(call.kept->owner, block.chain[0], doubles_with_rows(block.n));
     if (!to) return leave(block, ~none(), call.left);
     const Packed r = open(call.r, block, lane, arena, true);
-    const System s = kept::system(to, block.n, arena.vecs(block.n + W));
+    const ChainSystem s = kept::system(to, block.n, arena.vecs(block.n + W));
     const Reader in(block, call.box, none_, r, {}, {});
     mask calm, good = block.uniform_w ? forward<true, true>(block, in, s, nullptr, calm)
                                       : forward<false, true>(block, in, s, nullptr, calm);
@@ -128,7 +128,7 @@ HOL_INLINE void sides_of_chunk(const Block &block, const vec *d, const RowsOfLan
 // Right-hand sides of all bonds into t, and the sweep up on the way. Returns the lanes in which nothing can overflow on
 // the way down, as Sweep::calm().
 template <bool weigh, bool has_v, bool has_f>
-HOL_NOINLINE mask substitute_sides(const Block &block, const System &s, const double *kept, const Packed &v,
+HOL_NOINLINE mask substitute_sides(const Block &block, const ChainSystem &s, const double *kept, const Packed &v,
                                    const Packed &f) {
     constexpr int terms = (has_v ? velocity_squared : 0) | (has_f ? force_difference : 0);
     const RowsOfLanes of_v(has_v ? v : f), of_f(has_f ? f : v);
@@ -156,7 +156,7 @@ HOL_NOINLINE mask substitute_sides(const Block &block, const System &s, const do
 
 // The same of lists of atoms.
 template <bool has_v, bool has_f>
-HOL_NOINLINE mask substitute_listed(const Block &block, const System &s, const AtomLists &at, const double *v,
+HOL_NOINLINE mask substitute_listed(const Block &block, const ChainSystem &s, const AtomLists &at, const double *v,
                                     const double *f) {
     constexpr int terms = (has_v ? velocity_squared : 0) | (has_f ? force_difference : 0);
     const vec *const w = block.uniform_w ? nullptr : block.w;
@@ -184,7 +184,7 @@ HOL_NOINLINE mask substitute_listed(const Block &block, const System &s, const A
 }
 
 // The same of values per bond that are given.
-HOL_NOINLINE mask substitute_given(const Block &block, const System &s, const double *rhs) {
+HOL_NOINLINE mask substitute_given(const Block &block, const ChainSystem &s, const double *rhs) {
     const vec half = 0.5 * block.mass;
     vec y = {}, size = {};
     for (long k = 0; W == 1 && k < block.n; ++k) {
@@ -218,7 +218,7 @@ HOL_NOINLINE mask substitute_given(const Block &block, const System &s, const do
 
 // Writes at once what the sweep down finds. Returns whether it is done; if not, nothing has been written.
 template <class Substitute, class Store>
-HOL_INLINE bool solve_at_once(const Block &block, const System &s, const KeptCall &call, const double *from,
+HOL_INLINE bool solve_at_once(const Block &block, const ChainSystem &s, const KeptCall &call, const double *from,
                               const Substitute &substitute, const Store &store) {
     if ((call.rhs ? !call.g.x : !call.v.x && !call.f.x) || call.tension || call.virial || block.lanes < W ||
         any(~kept_lanes(from)))
@@ -235,14 +235,14 @@ HOL_INLINE bool solve_at_once(const Block &block, const System &s, const KeptCal
 }
 
 // Of no forces and no velocities.
-HOL_INLINE void substitute_nothing(const Block &block, const System &s) {
+HOL_INLINE void substitute_nothing(const Block &block, const ChainSystem &s) {
     for (long k = 0; k < block.n; ++k) s.t[k] = vec{};
 }
 
 static void solve_block(const Block &block, const Lane *lane, const KeptCall &call, Arena arena, Tally &tally) {
     const double *const from = call.kept->block[block.chain[0]];
     if (!from) return;
-    const System s = kept::system(from, block.n, arena.vecs(block.n + W));
+    const ChainSystem s = kept::system(from, block.n, arena.vecs(block.n + W));
     const vec half = splat(0.5);
     if (block.staged && listed(block, lane)) {
         const AtomLists at(lane);

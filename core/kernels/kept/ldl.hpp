@@ -133,7 +133,7 @@ private:
         if (x.terms & squares) read_atoms(*x.in.v, x.at, x.s, tile, x.v);
         x.load_inputs(tile);
         for (int64_t k = tile.first; k < tile.end; k += x.step) {
-            x.some(x.t, k) = x.sides_of(tile, k, x.terms);
+            x.some(x.t, k) = x.right_hand_sides_of(tile, k, x.terms);
             x.some(x.back, k) = Columns<V>{};
         }
     }

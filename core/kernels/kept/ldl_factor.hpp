@@ -69,7 +69,7 @@ private:
         for (int64_t row = tile.first_row; row < tile.end_row; ++row) {
             const Row &from = x.r.at_four_times(s.from[row]), &to = x.r.at_four_times(s.to[row]);
             Pair<Row> bond = two_difference<Row>(to, from);
-            if (x.box.shape != Box::none) {
+            if (x.box.lattice != Box::none) {
                 Vector3<V> d = {}, low = {};
                 unrounded_bond(x.box, vector_of(from), vector_of(to), d, low);
                 bond = {row_of(d), row_of(low)};

@@ -35,7 +35,7 @@ struct KeepTrees {
         double *const to = call.kept->room(call.kept->owner, lane[0].molecule, Stored::doubles(elimination));
         if (!to) return leave(lane, (1u << used) - 1, call.left);
         Memory<V> memory = {scratch};
-        Linear<V> z(elimination, lane, used, true, call.box, call.r, memory);
+        TreeLinear<V> z(elimination, lane, used, true, call.box, call.r, memory);
         z.x.in = {};
         const unsigned good = load_and_solve(z, 0, false);
         Stored(elimination, to).keep(z, good);

@@ -29,7 +29,7 @@ struct KeptTrees {
     // Number of doubles.
     static constexpr int64_t of_bond = sizeof(KeptBond<V>) / sizeof(V);
     static int64_t doubles(const EliminationPlan &s) {
-        const int64_t of_ring = s.type == EliminationPlan::ring ? Ring<V>::values(s) : 0;
+        const int64_t of_ring = s.type == EliminationPlan::ring ? RingLinear<V>::values(s) : 0;
         return most_lanes + Width<V>::lanes * (of_bond * s.n_bonds + s.n_atoms + s.n_pairs + of_ring);
     }
     KeptTrees(const EliminationPlan &s, double *block) : lanes(block) {
@@ -42,7 +42,7 @@ struct KeptTrees {
     }
 
     // From an elimination that is done.
-    void keep(const Linear<V> &z, unsigned good) const {
+    void keep(const TreeLinear<V> &z, unsigned good) const {
         const EliminationPlan &s = z.x.s;
         lanes[0] = static_cast<double>(good);
         for (int32_t k = 0; k < s.n_bonds; ++k) {

@@ -8,7 +8,7 @@
 namespace holonomic::HOL_ISA {
 
 #if HOL_LANES >= 4 && defined(__AVX2__)
-// Rows are read in the same pieces as they are written, and never beyond z. A load that overlaps a recent store in any
+// Rows are read in the same parts as they are written, and never beyond z. A load that overlaps a recent store in any
 // other way has to wait for it.
 HOL_INLINE void read_rows(const double *const *p, quad &x, quad &y, quad &z) {
     const quad even = _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_loadu_pd(p[0])), _mm_loadu_pd(p[2]), 1);
@@ -92,8 +92,8 @@ struct AtomLists {
     }
 };
 
-template <class Place>
-HOL_INLINE vec3 gather(const double *base, const Place &at, long k) {
+template <class View>
+HOL_INLINE vec3 gather(const double *base, const View &at, long k) {
     const double *p[W];
     HOL_UNROLL
     for (int i = 0; i < W; ++i) p[i] = at.atom(base, i, k);
@@ -102,8 +102,8 @@ HOL_INLINE vec3 gather(const double *base, const Place &at, long k) {
     return a;
 }
 
-template <Update update, class Place>
-HOL_INLINE void scatter(double *base, const Place &at, long k, vec3 a) {
+template <Update update, class View>
+HOL_INLINE void scatter(double *base, const View &at, long k, vec3 a) {
     if (update == add_) a = gather(base, at, k) + a;
     double *p[W];
     HOL_UNROLL

@@ -18,7 +18,7 @@ struct Block {
     long n, n_min;    // bonds of the longest and of the shortest lane
     long len[W];      // bonds of each lane
     int lanes;        // lanes in use; the others repeat the first one and are never stored
-    bool roomy;       // W atoms more can be read behind each lane
+    bool padded;      // W atoms more can be read behind each lane
     long ahead;       // doubles from a lane's vectors to those of the next block, to be fetched early; or 0
     long list_ahead;  // the same for lists of atoms
     bool staged;      // some lanes lie in staging buffers, so all do
@@ -93,8 +93,8 @@ HOL_INLINE mask joint(const Block &block, long k) { return less(splat(static_cas
 
 // Returns where W + 1 atoms can be read from atom k of a vector [len+1][3] on. If some lie past its end, that is
 // buffer[3 W + 3], padded with zeros.
-HOL_INLINE const double *window(const double *p, long k, long len, bool roomy, double *buffer) {
-    if (__builtin_expect(roomy || k + W <= len, 1)) return p + 3 * k;
+HOL_INLINE const double *window(const double *p, long k, long len, bool padded, double *buffer) {
+    if (__builtin_expect(padded || k + W <= len, 1)) return p + 3 * k;
     const long left = len - k + 1 > 0 ? 3 * (len - k + 1) : 0;
     for (long i = 0; i < 3 * W + 3; ++i) buffer[i] = i < left ? p[3 * k + i] : 0.0;
     return buffer;
@@ -139,14 +139,6 @@ HOL_INLINE vec3 load_atom(const Packed &p) {
         a.z[i] = p.lane[i][2];
     }
     return a;
-}
-
-// The atoms k0 + 1 .. k0 + W where lanes may end. Vectors behind an end have any value.
-HOL_NOINLINE void load_ragged_atoms(const Block &block, const Packed &p, long k0, vec3 *atoms) {
-    double buffer[W][3 * W + 3];
-    const double *from[W];
-    for (int i = 0; i < W; ++i) from[i] = window(p.lane[i], k0, block.len[i], block.roomy, buffer[i]) + 3;
-    load_atoms(from, atoms + k0 + 1);
 }
 
 }  // namespace holonomic::HOL_ISA

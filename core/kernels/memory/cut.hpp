@@ -15,7 +15,7 @@ constexpr int64_t segment_bonds = W < 2 ? 256 : 1024, window_bonds = 512, longes
 
 // Bonds of a lane in the longest block of a long chain. Rounding up and neighbours add at most 12.
 constexpr int64_t longest_segment = segment_bonds / W + 12, longest_window = window_bonds + 12 + 2 * longest_margin;
-constexpr int64_t longest_piece = longest_segment > longest_window ? longest_segment : longest_window;
+constexpr int64_t longest_cut = longest_segment > longest_window ? longest_segment : longest_window;
 
 // How a chain is cut. The W segments of a block have the same number of bonds, a multiple of `step`; only the last one
 // of the chain may be shorter. The cut depends on nothing but the chain's length, so results depend on neither threads
@@ -120,17 +120,17 @@ struct SeparatorsBehind {
     }
 };
 
-// A long chain in windows: W pieces of it with a margin on either side, worked on in cache as chains of their own. What
-// happens beyond the end of a piece is felt k joints further in by no more than the product of their |l|, which dies
+// A long chain in windows: W parts of it with a margin on either side, worked on in cache as chains of their own. What
+// happens beyond the end of a part is felt k joints further in by no more than the product of their |l|, which dies
 // within a few dozen bonds of a coil; what is found for the margins is thrown away. A chain whose ends are felt farther
 // is worked on in a lane of its own.
 
-constexpr long shortest_piece = 96;   // with shorter ones the margins would cost too much
+constexpr long shortest_window = 96;  // with shorter ones the margins would cost too much
 constexpr double negligible = 1e-19;  // of what happens beyond a margin
 
 static inline Cut windows(int64_t n_bonds) { return Cut(n_bonds, window_bonds * W); }
 
-// How many bonds beyond an atom of the chain, in the direction `step` (1 or -1), a piece needs there; those to the end
+// How many bonds beyond an atom of the chain, in the direction `step` (1 or -1), a part needs there; those to the end
 // of the chain if that comes first. Or -1: too many.
 //
 // Elimination towards the margin finds P = w q + E at a joint and E >= w' q sin'^2, where ' is the joint before, at an
@@ -166,20 +166,20 @@ static inline long margin(const AtomArray &array, const Box &box, const Lane &la
 }
 
 struct Window {
-    SegmentBlock own;  // the pieces without their margins
+    SegmentBlock own;  // the parts without their margins
     Lane lane[W];      // with them: the same margins for all, but at the ends of the chain
     Block block;       // of these
     long skip[W];      // bonds of the margin before
     bool even;         // the same in all
 };
 
-// Window j of a chain, whose bonds are those of `r`. `beyond`: bonds behind a piece whose pull it needs to write its
+// Window j of a chain, whose bonds are those of `r`. `beyond`: bonds behind a part whose pull it needs to write its
 // last atom. Returns false if windows don't pay or won't do.
 static inline bool open_window(const AtomArray &r, const Box &box, const Lane &chain, int64_t j, long beyond,
                                Arena &arena, Window &x) {
     x.own = segment_block(windows(chain.n_bonds), j, chain);
     const SegmentBlock &s = x.own;
-    if (s.own_max < shortest_piece) return false;
+    if (s.own_max < shortest_window) return false;
     long before = 0, behind = 0;
     for (int i = 0; i < W; ++i) {
         const long left = margin(r, box, chain, s.from[i], -1, 0, arena);
@@ -188,15 +188,15 @@ static inline bool open_window(const AtomArray &r, const Box &box, const Lane &c
         before = left > before ? left : before;
         behind = right > behind ? right : behind;
     }
-    Lane piece[W];
+    Lane part[W];
     x.even = true;
     for (int i = 0; i < W; ++i) {
         const int64_t from = s.from[i] > before ? s.from[i] - before : 0, end = s.from[i] + s.own[i] + behind;
-        piece[i] = part_of(chain, from, (end < chain.n_bonds ? end : chain.n_bonds) - from);
+        part[i] = part_of(chain, from, (end < chain.n_bonds ? end : chain.n_bonds) - from);
         x.skip[i] = static_cast<long>(s.from[i] - from);
         x.even = x.even && x.skip[i] == x.skip[0];
     }
-    open_block(Unit{piece, W, false, false}, 0, x.block, x.lane);
+    open_block(Unit{part, W, false, false}, 0, x.block, x.lane);
     set_masses(x.block, x.lane, arena);
     return true;
 }

@@ -73,8 +73,8 @@ static void load_chunks(const Reader &in, long k0, long end, vec3 *D, vec *B) {
 // Those that whole chunks of a block have, or nullptr: bond by bond.
 static Reader::LoadChunks *chunks_of(const Block &block, const Box &box, int terms, bool extended) {
     constexpr int forces = force_difference, both = velocity_squared | force_difference;
-    if (extended || box.shape == Box::triclinic) return nullptr;
-    const bool boxed = box.shape != Box::none;
+    if (extended || box.lattice == Box::triclinic) return nullptr;
+    const bool boxed = box.lattice != Box::none;
     const bool uniform = (terms & force_difference) && block.uniform_w;  // else masses may not have been set
     switch (terms) {
         case none_:
@@ -153,7 +153,7 @@ HOL_NOINLINE void load_rates(const Reader &in, long from, long end, const vec3 *
     if (from == 0) velocities[0] = load_atom(*in.v);
     vec3 v = velocities[from];
     long k = from;
-    const long n = end <= block.n_min && block.roomy ? end : (end < block.n_min ? end : block.n_min) - W + 1;
+    const long n = end <= block.n_min && block.padded ? end : (end < block.n_min ? end : block.n_min) - W + 1;
     vec3 *x = velocities + from;
     const long done = load_rates_in_fours(in.v->lane[0] + 3 * from, end - from, D, B, x + 1);
     k += done;
@@ -204,9 +204,9 @@ HOL_NOINLINE void load_bonds(const Reader &in, long k0, long end, vec3 *D, vec3 
     const int terms = in.terms;
     subtract(block, *in.r, false, k0, end, D, low);
     vec3 unused = {};
-    if (low && in.box.shape != Box::none) {
+    if (low && in.box.lattice != Box::none) {
         for (long k = 0; k < n; ++k) wrap<true>(in.box, D[k], low[k]);
-    } else if (in.box.shape != Box::none) {
+    } else if (in.box.lattice != Box::none) {
         const Box box = in.box;  // by value: stores don't change it
         for (long k = 0; k < n; ++k) wrap<false>(box, D[k], unused);
     }
@@ -255,7 +255,7 @@ void Reader::load_any(long from, long end, vec3 *D, vec3 *low, vec *B, vec3 *vel
     if (load_chunks) {
         // Where more can be read behind the lanes, so are chunks that end behind them.
         const long all = block.n_min < end ? block.n_min : end;
-        k = block.roomy && all == end ? (end - from + W - 1) / W * W : (all > from ? (all - from) / W * W : 0);
+        k = block.padded && all == end ? (end - from + W - 1) / W * W : (all > from ? (all - from) / W * W : 0);
         if (k > 0) load_chunks(*this, from, from + k, D, B);
         for (; from + k < end; k += W)
             load_last_chunk(*this, from + k, end < from + k + W ? end : from + k + W, D + k, B ? B + k : nullptr);
@@ -279,7 +279,7 @@ Reader::Reader(const Block &of, const Box &in, int wanted, const AtomLists &at, 
 }
 
 void load_bond_vectors(const Block &block, const Box &box, const Packed &r, vec3 *D) {
-    if (box.shape == Box::none && block.n == block.n_min && (block.n % W == 0 || block.roomy))
+    if (box.lattice == Box::none && block.n == block.n_min && (block.n % W == 0 || block.padded))
         return subtract_chunks<false>(r, 0, block.n, D, nullptr);
     Reader reader(block, box, none_, r, r, r);
     reader.ahead = 0;  // it is fetched later, while these are worked on

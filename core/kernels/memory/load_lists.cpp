@@ -14,7 +14,7 @@ static void load_listed(const Reader &in, long k0, long end, vec3 *D, vec *B, ve
     const double *const r = in.of_r, *const v = in.of_v, *const f = in.of_f;
     const vec *const w = block.uniform_w ? nullptr : block.w;
     const vec mass = block.mass;
-    const Box::Shape shape = box.shape;
+    const Box::Lattice shape = box.lattice;
     vec3 r0 = gather(r, at, k0), v0 = {}, f0 = {}, unused = {};
     if (has_v) v0 = gather(v, at, k0);
     if (has_f) f0 = gather(f, at, k0);

@@ -75,7 +75,7 @@ void note_bad(const Block &block, mask bad, Tally &tally) {
 void open_block(const Unit &unit, int64_t first, Block &block, Lane *lane) {
     const int64_t left = unit.count - first;
     block.lanes = left < W ? static_cast<int>(left) : W;
-    block.roomy = block.staged = false;
+    block.padded = block.staged = false;
     block.ahead = block.list_ahead = 0;
     if (unit.regular) {
         const Lane &head = unit.lanes[0];
@@ -95,7 +95,7 @@ void open_block(const Unit &unit, int64_t first, Block &block, Lane *lane) {
             lane[i].chain = block.chain[i] = head.chain + c;
         }
         block.staged = head.atoms != nullptr;
-        block.roomy = (unit.roomy || (left - block.lanes) * (n + 1) >= W) && !block.staged;
+        block.padded = (unit.padded || (left - block.lanes) * (n + 1) >= W) && !block.staged;
         if (unit.large) block.ahead = 3 * W * (n + 1);  // the next unit often goes on where this one ends
         if (unit.large && left >= 2 * W) block.list_ahead = W * (n + 1);
         return;

@@ -44,7 +44,7 @@ HOL_INLINE void close(const AtomArray &array, const Block &block, const Lane *la
 HOL_INLINE void open_alone(const Lane &chain, bool large, Block &block) {
     block.n = block.n_min = block.len[0] = chain.n_bonds;
     block.lanes = 1;
-    block.roomy = false;
+    block.padded = false;
     block.ahead = large ? 3 * (chain.n_bonds + 1) : 0;
     block.list_ahead = 0;
     block.staged = chain.atoms != nullptr;

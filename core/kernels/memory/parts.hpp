@@ -7,8 +7,8 @@
 #include <stddef.h>
 
 #include "core/kernels/memory/stage.hpp"
-#include "core/kernels/molecules/elimination_plan.hpp"
 #include "core/kernels/tally.hpp"
+#include "core/plan/elimination.hpp"
 
 namespace holonomic::HOL_ISA {
 
@@ -108,13 +108,13 @@ HOL_NOINLINE bool in_packed_parts(const Call &call, const AnyUnit &unit, Tally &
                 x, x + sizeof(double), x + 2 * sizeof(double), 3 * sizeof(double), array.is_float, true};
         }
         const Tally before = tally;
-        part.roomy = true;
+        part.padded = true;
         work(of_part, part, tally);
         if (__builtin_expect(tally.n_bad > before.n_bad, 0)) {
             tally = before;
             AnyUnit same = part;
             same.lanes = &there;
-            same.roomy = false;
+            same.padded = false;
             work(call, same, tally);
             continue;
         }

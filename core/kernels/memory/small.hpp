@@ -17,7 +17,7 @@ namespace holonomic::HOL_ISA {
 // Over consecutive atoms, without a box; else largest_boxed_molecule.
 constexpr int largest_molecule = 5;
 
-// A place: the W molecules of a unit from molecule `first` on. What all have:
+// A view: the W molecules of a unit from molecule `first` on. What all have:
 //   end(unit, first)   the end of those that may be done from `first` on
 //   next(first, end)   how many of these are the next block; 0: none is left
 //   atom(base, i, k)   atom k of lane i in a packed array
@@ -25,7 +25,7 @@ constexpr int largest_molecule = 5;
 //   array(of_call)     what atoms are read from: the base of a packed array, or columns
 //   source(array, box) where it is, for what is rare
 // in_row: rows of molecules follow each other in packed arrays. alike: all have the masses of the unit's first one, and
-// one's atoms stand behind the other's. loose: each has its own.
+// one's atoms stand behind the other's. irregular: each has its own.
 
 // One behind the other in a regular unit.
 template <int N>
@@ -42,7 +42,7 @@ struct Consecutive {
 // In packed arrays.
 template <int N>
 struct InRow : Consecutive<N> {
-    static constexpr bool packed = true, in_row = true, alike = true, loose = false;
+    static constexpr bool packed = true, in_row = true, alike = true, irregular = false;
     static constexpr int elements = 3 * (N + 1);
     typedef EvenLanes<elements> Lanes;
     int64_t at;  // the first one
@@ -52,7 +52,7 @@ struct InRow : Consecutive<N> {
     HOL_FORCED Lanes lanes_of(double *base) const { return {base + at}; }
     // W atoms behind them can be read.
     HOL_STATIC int64_t end(const Unit &unit, int64_t) {
-        return unit.count - (W == 1 || unit.roomy ? 0 : (W + N) / (N + 1));
+        return unit.count - (W == 1 || unit.padded ? 0 : (W + N) / (N + 1));
     }
     HOL_FORCED const double *atom(const double *base, int i, long k) const { return base + at + 3 * ((N + 1) * i + k); }
     HOL_FORCED Source source(const double *base, const Box &box) const {
@@ -83,7 +83,7 @@ struct ByList : InRow<N>, AtomLists {
 template <int N>
 struct ByLanes {
     static constexpr int bonds = N;
-    static constexpr bool packed = true, in_row = false, alike = false, loose = true;
+    static constexpr bool packed = true, in_row = false, alike = false, irregular = true;
     const Lane *lane;
     HOL_STATIC double *array(const AtomArray &a) { return base_of(a); }
     ByLanes(const Unit &unit, int64_t first, int64_t used) : lane(unit.lanes + first) {
@@ -110,7 +110,7 @@ private:
 // In columns.
 template <int N>
 struct InColumns : Consecutive<N> {
-    static constexpr bool packed = false, in_row = false, alike = true, loose = false;
+    static constexpr bool packed = false, in_row = false, alike = true, irregular = false;
     int64_t at;  // the first one
     InColumns(const Unit &unit, int64_t first, int64_t)
         : Consecutive<N>(unit, first), at(unit.lanes[0].first_atom + (N + 1) * first) {}
@@ -141,21 +141,21 @@ constexpr int whole = (n + W - 1) / W *W;
 template <int N>
 constexpr int vectors_of = whole<3 * (N + 1)>;  // of the atoms of W molecules
 
-// The atoms of a place: element 3 k + c is component c of atom k. In a row, up to W - 1 doubles behind are read.
-template <class Place>
-HOL_INLINE void load_molecules(const Place &place, const double *base, vec *elements) {
-    constexpr int N = Place::bonds;
-    if constexpr (Place::in_row) {
+// The atoms of a view: element 3 k + c is component c of atom k. In a row, up to W - 1 doubles behind are read.
+template <class View>
+HOL_INLINE void load_molecules(const View &view, const double *base, vec *elements) {
+    constexpr int N = View::bonds;
+    if constexpr (View::in_row) {
         HOL_UNROLL
         for (int j = 0; j < vectors_of<N> / W; ++j) {
             HOL_UNROLL
-            for (int i = 0; i < W; ++i) elements[j * W + i] = load(place.atom(base, i, 0) + j * W);
+            for (int i = 0; i < W; ++i) elements[j * W + i] = load(view.atom(base, i, 0) + j * W);
             transpose(elements + j * W);
         }
     } else {
         HOL_UNROLL
         for (int k = 0; k <= N; ++k) {
-            const vec3 a = gather(base, place, k);
+            const vec3 a = gather(base, view, k);
             elements[3 * k] = a.x;
             elements[3 * k + 1] = a.y;
             elements[3 * k + 2] = a.z;
@@ -163,9 +163,9 @@ HOL_INLINE void load_molecules(const Place &place, const double *base, vec *elem
     }
 }
 
-template <class Place>
-HOL_INLINE void load_molecules(const Place &place, const Columns &columns, vec *elements) {
-    read_columns<Place::bonds + 1>(columns, place.at, reinterpret_cast<vec3 *>(elements));
+template <class View>
+HOL_INLINE void load_molecules(const View &view, const Columns &columns, vec *elements) {
+    read_columns<View::bonds + 1>(columns, view.at, reinterpret_cast<vec3 *>(elements));
 }
 
 // Gives a sink n values of each lane, transposed in place.
@@ -187,45 +187,45 @@ HOL_INLINE void store_rows(vec *value, const Sink &sink) {
     }
 }
 
-// Writes the atoms of a place, or adds to them.
-template <Update update, class Place>
-HOL_INLINE void store_molecules(const Place &place, vec *value, double *base) {
-    if constexpr (Place::in_row) {
-        store_rows<Place::elements>(value, AtomSink<update, typename Place::Lanes>{place.lanes_of(base)});
+// Writes the atoms of a view, or adds to them.
+template <Update update, class View>
+HOL_INLINE void store_molecules(const View &view, vec *value, double *base) {
+    if constexpr (View::in_row) {
+        store_rows<View::elements>(value, AtomSink<update, typename View::Lanes>{view.lanes_of(base)});
     } else {
         HOL_UNROLL
-        for (int k = 0; k <= Place::bonds; ++k)
-            scatter<update>(base, place, k, vec3{value[3 * k], value[3 * k + 1], value[3 * k + 2]});
+        for (int k = 0; k <= View::bonds; ++k)
+            scatter<update>(base, view, k, vec3{value[3 * k], value[3 * k + 1], value[3 * k + 2]});
     }
 }
 
-template <Update update, class Place>
-HOL_INLINE void store_molecules(const Place &place, vec *value, const Columns &columns) {
-    constexpr int n = Place::bonds + 1;
+template <Update update, class View>
+HOL_INLINE void store_molecules(const View &view, vec *value, const Columns &columns) {
+    constexpr int n = View::bonds + 1;
     if (update == add_) {
         vec before[3 * n];
-        load_molecules(place, columns, before);
+        load_molecules(view, columns, before);
         HOL_UNROLL
         for (int e = 0; e < 3 * n; ++e) value[e] = before[e] + value[e];
     }
-    write_columns<n>(columns, place.at, reinterpret_cast<vec3 *>(value));
+    write_columns<n>(columns, view.at, reinterpret_cast<vec3 *>(value));
 }
 
 // Writes factor times a value per bond; zeros as +0.
-template <class Place>
-HOL_INLINE void store_multipliers(const Place &place, const vec *t, vec factor, double *base) {
-    constexpr int N = Place::bonds;
+template <class View>
+HOL_INLINE void store_multipliers(const View &view, const vec *t, vec factor, double *base) {
+    constexpr int N = View::bonds;
     vec value[whole<N>] = {};
     HOL_UNROLL
     for (int k = 0; k < N; ++k) value[k] = mul_add(factor, t[k], vec{});
-    if constexpr (Place::loose) {
+    if constexpr (View::irregular) {
         HOL_UNROLL
         for (int k = 0; k < N; ++k)
-            for (int i = 0; i < W; ++i) base[place.bond_of(i) + k] = value[k][i];
+            for (int i = 0; i < W; ++i) base[view.bond_of(i) + k] = value[k][i];
     } else if constexpr (N == 1) {
-        store(base + place.bond, value[0]);
+        store(base + view.bond, value[0]);
     } else {
-        store_rows<N>(value, AtomSink<write_, EvenLanes<N>>{base + place.bond});
+        store_rows<N>(value, AtomSink<write_, EvenLanes<N>>{base + view.bond});
     }
 }
 
@@ -233,9 +233,9 @@ HOL_INLINE void store_multipliers(const Place &place, const vec *t, vec factor, 
 // look at the call would take 1.02 to 1.04 times as long where nobody asks. kernel(a constant) is called with true for
 // the first of these.
 constexpr int fewest_with_virial = 3;
-template <class Place, bool boxed, class Kernel>
+template <class View, bool boxed, class Kernel>
 HOL_INLINE int64_t with_virial_or_not(bool virial, const Kernel &kernel) {
-    if constexpr (Place::bonds < fewest_with_virial)
+    if constexpr (View::bonds < fewest_with_virial)
         if (__builtin_expect(virial, 0)) return kernel(Constant<bool, true>{}, Constant<bool, true>{});
     return kernel(Constant<bool, false>{}, Constant<bool, boxed>{});
 }
@@ -260,17 +260,17 @@ HOL_INLINE void count_virial(const vec3 *d, const vec *t, int64_t used, vec fact
     add_virial_of<N>(bonds, values, used, factor, tally);
 }
 
-// Minimum images of the bonds of a place. In a triclinic box that is compiled into the kernels of molecules in a row
+// Minimum images of the bonds of a view. In a triclinic box that is compiled into the kernels of molecules in a row
 // alone: in the others it would take the registers of what is common.
-template <class Place>
+template <class View>
 HOL_INLINE void take_images(const Box &box, vec3 *D) {
-    constexpr int N = Place::bonds;
-    if (box.shape == Box::none) return;
-    if (__builtin_expect(box.shape == Box::triclinic, 0)) {
+    constexpr int N = View::bonds;
+    if (box.lattice == Box::none) return;
+    if (__builtin_expect(box.lattice == Box::triclinic, 0)) {
         vec3 unused = {};
         HOL_UNROLL
         for (int k = 0; k < N; ++k) {
-            if constexpr (Place::in_row)
+            if constexpr (View::in_row)
                 wrap<false>(box, D[k], unused);
             else
                 D[k] = triclinic_image(box, D[k]);
@@ -283,18 +283,18 @@ HOL_INLINE void take_images(const Box &box, vec3 *D) {
         d[c] = mul_add(round(d[c] * box.per_side[c % 3]), splat(box.minus_side[c % 3]), d[c]);
 }
 
-// The bonds of a place. `boxed`: there may be a box. In a row they are differences of numbers as they stand in memory,
+// The bonds of a view. `boxed`: there may be a box. In a row they are differences of numbers as they stand in memory,
 // if that transposes fewer vectors and nobody needs the atoms; elsewhere the atoms are read first.
-template <bool boxed, bool with_atoms, class Place, class Array>
-HOL_INLINE void load_bonds(const Box &box, const Place &place, const Array &array, vec *atoms, vec3 *D) {
-    constexpr int N = Place::bonds;
-    if constexpr (Place::in_row && !with_atoms && whole<3 * N> < vectors_of<N>) {
+template <bool boxed, bool with_atoms, class View, class Array>
+HOL_INLINE void load_bonds(const Box &box, const View &view, const Array &array, vec *atoms, vec3 *D) {
+    constexpr int N = View::bonds;
+    if constexpr (View::in_row && !with_atoms && whole<3 * N> < vectors_of<N>) {
         vec d[whole<3 * N>];
         HOL_UNROLL
         for (int j = 0; j < whole<3 * N> / W; ++j) {
             HOL_UNROLL
             for (int i = 0; i < W; ++i) {
-                const double *const p = place.atom(array, i, 0) + j * W;
+                const double *const p = view.atom(array, i, 0) + j * W;
                 d[j * W + i] = load(p + 3) - load(p);
             }
             transpose(d + j * W);
@@ -302,27 +302,27 @@ HOL_INLINE void load_bonds(const Box &box, const Place &place, const Array &arra
         HOL_UNROLL
         for (int k = 0; k < N; ++k) D[k] = {d[3 * k], d[3 * k + 1], d[3 * k + 2]};
     } else {
-        load_molecules(place, array, atoms);
+        load_molecules(view, array, atoms);
         vec *const d = &D[0].x;
         HOL_UNROLL
         for (int c = 0; c < 3 * N; ++c) d[c] = atoms[c + 3] - atoms[c];
     }
-    if (boxed) take_images<Place>(box, D);
+    if (boxed) take_images<View>(box, D);
 }
 
 // The masses of blocks. Those in a row are the given ones; lists have them in any case as a table, so that there is one
 // kernel for equal and unequal ones. Where each lane is of a kind of its own, `own` holds also the other members of a
 // block that the kernels ask for.
-template <class Place>
+template <class View>
 struct BlockMasses {
-    static constexpr int N = Place::bonds;
+    static constexpr int N = View::bonds;
     Block own;
     const Block &block;
     vec w[N + 1] = {};
     int64_t kind[W];
-    explicit BlockMasses(const Block &given) : block(Place::alike ? given : own) {
-        if (Place::alike) return;
-        if (!Place::loose) {
+    explicit BlockMasses(const Block &given) : block(View::alike ? given : own) {
+        if (View::alike) return;
+        if (!View::irregular) {
             own = given;
             for (int k = 0; k <= N; ++k) w[k] = given.uniform_w ? splat(1.0) : given.w[k];
             own.w = w;
@@ -344,9 +344,9 @@ struct BlockMasses {
     BlockMasses &operator=(const BlockMasses &) = delete;
 
     // Returns whether the masses are others than before.
-    HOL_FORCED bool take(const Place &place) {
-        if constexpr (Place::loose) {
-            const Lane *const lane = place.lane;
+    HOL_FORCED bool take(const View &view) {
+        if constexpr (View::irregular) {
+            const Lane *const lane = view.lane;
             bool same = true;
             for (int i = 0; i < W; ++i) same = same & (kind[i] == lane[i].kind);
             if (__builtin_expect(same, 1)) return false;
@@ -362,8 +362,8 @@ struct BlockMasses {
     }
 };
 
-// Calls kernel(place, uniform, boxed) for the molecules from `first` on, where place.type is one of memory/small.hpp.
-// The kernel returns the first molecule that is not done. `uniform`: not of loose lanes, with equal masses, and
+// Calls kernel(view, uniform, boxed) for the molecules from `first` on, where view.type is one of memory/small.hpp.
+// The kernel returns the first molecule that is not done. `uniform`: not of irregular lanes, with equal masses, and
 // `one_length`. `boxed`: there is a box, or, of molecules that are not in a row or come alone, there may be one. Units
 // that are not regular need no block: molecules with as many bonds as the first one are done.
 template <class Kernel>

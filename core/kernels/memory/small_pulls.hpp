@@ -6,9 +6,9 @@
 namespace holonomic::HOL_ISA {
 
 // G of the atoms of W molecules, written or added.
-template <class Place, class Array>
-HOL_INLINE void store_pulls(const vec3 *D, const vec *t, const Place &place, const Array &out, bool add) {
-    constexpr int N = Place::bonds;
+template <class View, class Array>
+HOL_INLINE void store_pulls(const vec3 *D, const vec *t, const View &view, const Array &out, bool add) {
+    constexpr int N = View::bonds;
     vec value[vectors_of<N>] = {};
     vec3 before = {};
     HOL_UNROLL
@@ -19,7 +19,7 @@ HOL_INLINE void store_pulls(const vec3 *D, const vec *t, const Place &place, con
         value[3 * k + 2] = g.z;
         before = after;
     }
-    add ? store_molecules<add_>(place, value, out) : store_molecules<write_>(place, value, out);
+    add ? store_molecules<add_>(view, value, out) : store_molecules<write_>(view, value, out);
 }
 
 }  // namespace holonomic::HOL_ISA

@@ -32,9 +32,9 @@ HOL_INLINE void for_each_element(const AtomArray &array, const Lane &lane, long 
 }
 
 // Separate arrays x, y and z in which a chain's atoms stand one behind the other. x == nullptr: another layout.
-struct Apart {
+struct SeparateArrays {
     double *x = nullptr, *y = nullptr, *z = nullptr;
-    Apart(const AtomArray &array, const Lane &lane, long from) {
+    SeparateArrays(const AtomArray &array, const Lane &lane, long from) {
         if (array.is_float || lane.atoms || !array.z || array.stride != sizeof(double)) return;
         x = reinterpret_cast<double *>(array.x) + lane.first_atom + from;
         y = reinterpret_cast<double *>(array.y) + lane.first_atom + from;
@@ -45,7 +45,7 @@ struct Apart {
 // Copies the atoms 0 .. n between x, y, z and packed[n+1][3], four (on Arm two) at a time. Returns the first atom that
 // is left. A plain loop takes twice as many instructions.
 #if defined(__AVX2__)
-HOL_INLINE long pack(const Apart &from, long n, double *packed) {
+HOL_INLINE long pack(const SeparateArrays &from, long n, double *packed) {
     long k = 0;
     for (; k + 3 <= n; k += 4) {
         const __m256d x = _mm256_loadu_pd(from.x + k), y = _mm256_loadu_pd(from.y + k), z = _mm256_loadu_pd(from.z + k);
@@ -58,7 +58,7 @@ HOL_INLINE long pack(const Apart &from, long n, double *packed) {
 }
 
 template <bool add>
-HOL_INLINE long unpack(const double *packed, long n, const Apart &to) {
+HOL_INLINE long unpack(const double *packed, long n, const SeparateArrays &to) {
     const auto put = [](double *p, __m256d a)
                          HOL_FORCED { _mm256_storeu_pd(p, add ? _mm256_add_pd(_mm256_loadu_pd(p), a) : a); };
     long k = 0;
@@ -74,7 +74,7 @@ HOL_INLINE long unpack(const double *packed, long n, const Apart &to) {
     return k;
 }
 #elif defined(__aarch64__)
-HOL_INLINE long pack(const Apart &from, long n, double *packed) {
+HOL_INLINE long pack(const SeparateArrays &from, long n, double *packed) {
     long k = 0;
     for (; k + 1 <= n; k += 2) {
         const float64x2x3_t a = {{vld1q_f64(from.x + k), vld1q_f64(from.y + k), vld1q_f64(from.z + k)}};
@@ -84,7 +84,7 @@ HOL_INLINE long pack(const Apart &from, long n, double *packed) {
 }
 
 template <bool add>
-HOL_INLINE long unpack(const double *packed, long n, const Apart &to) {
+HOL_INLINE long unpack(const double *packed, long n, const SeparateArrays &to) {
     const auto put = [](double *p, float64x2_t a) HOL_FORCED { vst1q_f64(p, add ? vld1q_f64(p) + a : a); };
     long k = 0;
     for (; k + 1 <= n; k += 2) {
@@ -96,9 +96,9 @@ HOL_INLINE long unpack(const double *packed, long n, const Apart &to) {
     return k;
 }
 #else
-HOL_INLINE long pack(const Apart &, long, double *) { return 0; }
+HOL_INLINE long pack(const SeparateArrays &, long, double *) { return 0; }
 template <bool add>
-HOL_INLINE long unpack(const double *, long, const Apart &) {
+HOL_INLINE long unpack(const double *, long, const SeparateArrays &) {
     return 0;
 }
 #endif
@@ -118,9 +118,9 @@ HOL_INLINE void copy_elements(const AtomArray &array, const Lane &lane, long fro
 
 template <Copy way>
 HOL_INLINE void copy_atoms(const AtomArray &array, const Lane &lane, long from, long n, double *packed) {
-    const Apart apart(array, lane, from);
+    const SeparateArrays arrays(array, lane, from);
     long done = 0;
-    if (apart.x) done = way == copy_in ? pack(apart, n, packed) : unpack<way == copy_back_and_add>(packed, n, apart);
+    if (arrays.x) done = way == copy_in ? pack(arrays, n, packed) : unpack<way == copy_back_and_add>(packed, n, arrays);
     if (done > n) return;
     if (array.is_float)
         copy_elements<way, float>(array, lane, from, n, packed);

@@ -4,8 +4,8 @@
 
 #include "core/kernels/arithmetic/width.hpp"
 #include "core/kernels/memory/prefetch.hpp"
-#include "core/kernels/molecules/elimination_plan.hpp"
-#include "core/kernels/molecules/way.hpp"
+#include "core/plan/elimination.hpp"
+#include "core/plan/way.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 

@@ -3,7 +3,7 @@
 
 #include "core/kernels/extended/plan_of.hpp"
 #include "core/kernels/extended/verbs.hpp"
-#include "core/kernels/molecules/elimination_plan.hpp"
+#include "core/plan/elimination.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 
@@ -29,7 +29,7 @@ template <class Call>
 HOL_NOINLINE void solve_flagged(const Call &call, const EliminationPlan &elimination, const MoleculeLane *lane,
                                 unsigned rest, double *scratch, Tally &tally) {
     double *const aligned = reinterpret_cast<double *>((reinterpret_cast<uintptr_t>(scratch) + 63) / 64 * 64);
-    extended::Memory memory = {reinterpret_cast<char *>(aligned)};
+    extended::ByteArena memory = {reinterpret_cast<char *>(aligned)};
     const ExtendedPlan plan = extended::plan_of(*extended_order(elimination), memory);
     for (; rest; rest &= rest - 1)
         extended_one(call, plan, lane[__builtin_ctz(rest)], reinterpret_cast<double *>(memory.next), tally);

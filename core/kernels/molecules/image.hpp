@@ -9,7 +9,7 @@ namespace holonomic::HOL_ISA::graph {
 // Minimum image of a bond vector; `lo` gets what the rounding of d leaves off.
 template <bool extended, class V>
 HOL_INLINE void take_image(const Box &box, Vector3<V> &d, Vector3<V> &lo) {
-    if (box.shape != Box::none) wrap<extended>(box, d, lo);
+    if (box.lattice != Box::none) wrap<extended>(box, d, lo);
 }
 
 template <int n, class V>
@@ -21,7 +21,7 @@ HOL_NOINLINE void take_images_of(const Box &box, Vector3<V> *d) {
 // Minimum images of n bond vectors, which stay in registers where there is no box.
 template <int n, class V>
 HOL_INLINE void take_images(const Box &box, Vector3<V> *d) {
-    if (__builtin_expect(box.shape == Box::none, 1)) return;
+    if (__builtin_expect(box.lattice == Box::none, 1)) return;
     Vector3<V> image[n];
     HOL_UNROLL
     for (int k = 0; k < n; ++k) image[k] = d[k];

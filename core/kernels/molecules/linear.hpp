@@ -7,9 +7,9 @@
 namespace holonomic::HOL_ISA::graph {
 
 template <class V>
-struct Linear {
+struct TreeLinear {
     Molecules<V> x;
-    Ring<V> ring;
+    RingLinear<V> ring;
     Vector3<V> *r, *v, *f;  // [n_atoms] as they were read, by slot; those that there are terms of
     Memory<V> working;      // of a joint of many bonds
 
@@ -21,14 +21,14 @@ struct Linear {
     // Values of V that the arrays take.
     static int64_t values(const EliminationPlan &s) {
         int64_t n = s.n_atoms + bond_values * s.n_bonds + s.n_pairs + JointMemory<V, 0>::values(s.max_joint);
-        if (s.type == EliminationPlan::ring) n += Ring<V>::values(s);
+        if (s.type == EliminationPlan::ring) n += RingLinear<V>::values(s);
         n += bond_values * more_rows(s);
         n += 3 * 3 * static_cast<int64_t>(s.n_atoms);
         return n;
     }
 
-    Linear(const EliminationPlan &s, const MoleculeLane *lane, int used, bool packed, const Box &box,
-           const AtomArray &at, Memory<V> &memory)
+    TreeLinear(const EliminationPlan &s, const MoleculeLane *lane, int used, bool packed, const Box &box,
+               const AtomArray &at, Memory<V> &memory)
         : x{s, lane, used, Atoms<V>(lane, used, packed), &box, &at, nullptr, nullptr, nullptr, Width<V>::all(1), {}},
           ring() {
         x.per_cancelled2 = 1 / most_cancelled2(s.n_bonds);

@@ -12,7 +12,7 @@ namespace holonomic::HOL_ISA::graph {
 
 // v + w G of the atom in a slot.
 template <class V>
-struct Projected {
+struct ProjectedVelocities {
     const Vector3<V> *v, *pull;
     const V *w;
     HOL_FORCED Vector3<V> operator[](int32_t slot) const { return add_times(v[slot], w[slot], pull[slot]); }
@@ -21,7 +21,7 @@ struct Projected {
 // Trees and rings in lanes.
 template <class V>
 struct LinearBlock {
-    Linear<V> &z;
+    TreeLinear<V> &z;
     const int terms;
     const bool masses_known;
 
@@ -35,13 +35,13 @@ struct LinearBlock {
         write_vectors(g, z.x.at, z.x.s.slot_of, z.x.s.n_atoms, Slots<V>(z.pulls()),
                       Written<V>{which, nullptr, z.x.lane, add});
     }
-    HOL_FORCED void write(const Outputs &out, unsigned which, Tally &tally) const {
+    HOL_FORCED void write(const LinearOutputs &out, unsigned which, Tally &tally) const {
         if (out.virial) add_pulls_to_virial(z.x, which, tally);
         write_bonds_and_pulls(*this, out, which);
     }
-    HOL_FORCED void project(const Outputs &out, bool twice, unsigned which, Tally &tally) const {
+    HOL_FORCED void project(const LinearOutputs &out, bool twice, unsigned which, Tally &tally) const {
         write_all_but_atoms(*this, out, which, tally);
-        const Projected<V> projected = {z.v, z.pulls(), z.x.w};
+        const ProjectedVelocities<V> projected = {z.v, z.pulls(), z.x.w};
         if (twice) {
             for (int32_t slot = 0; slot < z.x.s.n_atoms; ++slot) put(z.v[slot], projected[slot]);
             solve_for_rates(z);
@@ -52,7 +52,7 @@ struct LinearBlock {
 
 // Call: of forces, of velocities, or for given right-hand sides.
 template <class Call>
-struct LinearWork {
+struct LinearOfBlocks {
     const Call &call;
     const EliminationPlan &elimination;
     const Way way;
@@ -69,8 +69,8 @@ struct LinearWork {
             if (elimination.ldl) return block_by_ldl<V>(lane, used, false, scratch);
         }
         Memory<V> memory = {scratch};
-        Linear<V> z(elimination, lane, used, packed, call.box, call.r, memory);
-        const Sides sides = sides_of(call);
+        TreeLinear<V> z(elimination, lane, used, packed, call.box, call.r, memory);
+        const RightHandSides sides = right_hand_sides_of(call);
         z.x.in = sides.in;
         const LinearBlock<V> x = {z, sides.terms, masses_known};
         const unsigned rest = solve_linear(call, x, tally, [&] { ahead.fetch(); });
@@ -83,7 +83,7 @@ private:
                                                 double *scratch) const {
         Memory<V> memory = {scratch};
         const LdlBlock<V> block = {elimination, lane, used, packed, masses_known, team, memory};
-        const Sides sides = sides_of(call);
+        const RightHandSides sides = right_hand_sides_of(call);
         const LdlLinear<V> list = block.linear(call.box, call.r, sides.in, sides.terms);
         const LdlWay<V> x = {list};
         if (const unsigned rest = solve_linear(call, x, tally, [] {}))
@@ -91,7 +91,7 @@ private:
     }
     // Given right-hand sides have no use for arms.
     bool solve_armed(const MoleculeLane *lane, double *scratch) const {
-        const Sides sides = sides_of(call);
+        const RightHandSides sides = right_hand_sides_of(call);
         if (sides.terms == given) return false;
         ArmedTree z(elimination, *lane, packed, call.box, call.r, sides.in, sides.terms, team, scratch);
         return solve_linear(call, z, tally, [] {}) == 0;

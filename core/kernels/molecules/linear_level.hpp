@@ -16,15 +16,17 @@
 namespace holonomic::HOL_ISA::graph {
 
 // The right-hand sides of a call, and of which terms they are made.
-struct Sides {
+struct RightHandSides {
     Inputs in;
     int terms;
 };
-HOL_INLINE Sides sides_of(const ForcesCall &call) {
+HOL_INLINE RightHandSides right_hand_sides_of(const ForcesCall &call) {
     return {{&call.v, &call.f, nullptr, false}, (call.v.x ? squares : 0) | (call.f.x ? pulls : 0)};
 }
-HOL_INLINE Sides sides_of(const SolveCall &call) { return {{nullptr, nullptr, call.rhs, false}, given}; }
-HOL_INLINE Sides sides_of(const VelocitiesCall &call) {
+HOL_INLINE RightHandSides right_hand_sides_of(const SolveCall &call) {
+    return {{nullptr, nullptr, call.rhs, false}, given};
+}
+HOL_INLINE RightHandSides right_hand_sides_of(const VelocitiesCall &call) {
     return {{&call.v, nullptr, nullptr, true, call.strain}, rates};
 }
 // Velocities in single precision have no use for a second solve.
@@ -47,21 +49,23 @@ HOL_INLINE NextMolecules next_of(const SolveCall &call) { return NextMolecules({
 HOL_INLINE NextMolecules next_of(const VelocitiesCall &call) { return NextMolecules({&call.r, &call.v}, call.lambda); }
 
 template <class Call>
-HOL_INLINE Outputs outputs_of(const Call &call) {
+HOL_INLINE LinearOutputs outputs_of(const Call &call) {
     return {&call.g, call.lambda, call.tension, call.add, call.virial};
 }
-HOL_INLINE Outputs outputs_of(const VelocitiesCall &call) { return {&call.v, call.lambda, nullptr, true, call.virial}; }
+HOL_INLINE LinearOutputs outputs_of(const VelocitiesCall &call) {
+    return {&call.v, call.lambda, nullptr, true, call.virial};
+}
 
 // Writes what the lanes in `which` have of a solution. Range: of bonds and atoms, or none for all of them.
 template <class Way, class... Range>
-HOL_INLINE void write_bonds_and_pulls(Way &x, const Outputs &out, unsigned which, const Range &...range) {
+HOL_INLINE void write_bonds_and_pulls(Way &x, const LinearOutputs &out, unsigned which, const Range &...range) {
     if (out.lambda) x.template write_bonds<false>(range..., 0.5, out.lambda, which);
     if (out.tension) x.template write_bonds<true>(range..., 1, out.tension, which);
     if (out.g && out.g->x) x.write_pulls(range..., *out.g, out.add, which);
 }
 // Of velocities before they are projected.
 template <class Way>
-HOL_INLINE void write_all_but_atoms(Way &x, const Outputs &out, unsigned which, Tally &tally) {
+HOL_INLINE void write_all_but_atoms(Way &x, const LinearOutputs &out, unsigned which, Tally &tally) {
     if (out.lambda || out.virial) x.write({nullptr, out.lambda, nullptr, false, out.virial}, which, tally);
 }
 

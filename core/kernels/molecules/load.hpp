@@ -13,7 +13,7 @@ constexpr int squares = velocity_squared, pulls = force_difference, rates = rate
 
 template <class V>
 struct Loader {
-    Linear<V> &z;
+    TreeLinear<V> &z;
     const int terms;
 
     bool has(int wanted) const { return (terms & wanted) != 0; }

@@ -4,12 +4,12 @@
 #include "core/kernels/arithmetic/thresholds.hpp"
 #include "core/kernels/arithmetic/vector3.hpp"
 #include "core/kernels/molecules/atoms/layout.hpp"
-#include "core/kernels/molecules/elimination_plan.hpp"
 #include "core/kernels/molecules/image.hpp"
+#include "core/plan/elimination.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 
-// A bond at its place (elimination_plan.hpp).
+// A bond at its place (core/plan/elimination.hpp).
 template <class V>
 struct BondRow {
     Vector3<V> d;

@@ -37,12 +37,12 @@ HOL_INLINE void read_positions(const EliminationPlan &s, const PositionsCall &ca
 
 // Bonds of the reference positions and of the new ones; returns the largest coordinate of the latter.
 template <class V>
-HOL_NOINLINE V load_bonds(Newton<V> &newton, const PositionsCall &call, const Atoms<V> &at) {
+HOL_NOINLINE V load_bonds(TreeNewton<V> &newton, const PositionsCall &call, const Atoms<V> &at) {
     const EliminationPlan &s = newton.x.s;
     const Vector3<V> *const r_ref = newton.x.r_ref, *const r = newton.x.r;
     read_positions(s, call, at, Slots<V>(newton.x.r_ref), Slots<V>(newton.x.r));
     V largest = {};
-    typename Newton<V>::Errors errors = {};
+    typename TreeNewton<V>::Errors errors = {};
     const auto load = [&](int32_t k, int32_t from, int32_t to) HOL_FORCED {
         make_bond(newton.x.row[k], call, r_ref[to] - r_ref[from], r[to] - r[from]);
         newton.measure_first(k, newton.x.row[k].D, errors);
@@ -145,7 +145,7 @@ struct PositionsBlock : PositionWay<typename System::Value> {
     }
 };
 
-struct PositionsWork {
+struct PositionsOfBlocks {
     const PositionsCall &call;
     const EliminationPlan &elimination;
     const bool packed;
@@ -158,7 +158,7 @@ struct PositionsWork {
         Memory<V> memory = {scratch};
         const unsigned rest = way == Way::sparse_ldl ? by_ldl<V>(lane, used, known, memory)
                               : way == Way::ring     ? by_block<RingNewton<V>>(lane, used, known, memory)
-                                                     : by_block<Newton<V>>(lane, used, known, memory);
+                                                     : by_block<TreeNewton<V>>(lane, used, known, memory);
         if (__builtin_expect(rest != 0, 0)) solve_flagged(call, elimination, lane, rest, memory.next, tally);
     }
 

@@ -10,12 +10,12 @@ namespace holonomic::HOL_ISA::graph {
 
 // Reads the molecules and solves, with right-hand sides of these terms (load.hpp). Returns the lanes that plain
 // arithmetic answers for. `masses_known`: they are those of the block before. G of all atoms is in z.pulls().
-unsigned load_and_solve(Linear<vec> &, int terms, bool masses_known);
-unsigned load_and_solve(Linear<double> &, int terms, bool masses_known);
+unsigned load_and_solve(TreeLinear<vec> &, int terms, bool masses_known);
+unsigned load_and_solve(TreeLinear<double> &, int terms, bool masses_known);
 
 // For the rates of the velocities z.v, with the same matrix; G of all atoms is then in z.pulls().
-void solve_for_rates(Linear<vec> &);
-void solve_for_rates(Linear<double> &);
+void solve_for_rates(TreeLinear<vec> &);
+void solve_for_rates(TreeLinear<double> &);
 
 // Reads the molecules and solves by sparse LDL^T. Returns the lanes that this answers for.
 unsigned solve_and_refine(const LdlLinear<vec> &);

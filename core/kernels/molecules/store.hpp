@@ -30,7 +30,7 @@ HOL_INLINE Vector3<double> pull_on(const Molecules<double> &x, int32_t slot) {
 }
 
 // Where the results of a linear solve go.
-struct Outputs {
+struct LinearOutputs {
     const AtomArray *g;  // or nullptr
     double *lambda, *tension;
     bool add, virial;

@@ -90,7 +90,7 @@ void add_virial(const Block &block, const Newton &x, mask which, double dt, Tall
 }
 
 // Multipliers and counts of the lanes that are good.
-static void note_solved(const Block &block, const Newton &x, const PositionsCall &call, const Outcome &out,
+static void note_solved(const Block &block, const Newton &x, const PositionsCall &call, const NewtonOutcome &out,
                         Tally &tally) {
     if (call.lambda) {
         const vec factor = splat(0.5 / (call.dt * call.dt)) / block.unit;
@@ -111,7 +111,7 @@ void Positions::load() const {
 
 // Goes on after a coarse move, from the coordinates as they are rounded. The moves that remain are small, and so
 // are their roundings. Puts back the lanes in which this fails, and returns them.
-mask Positions::settle(mask coarse, Carried &carried, Outcome &out) {
+mask Positions::settle(mask coarse, Carried &carried, NewtonOutcome &out) {
     Arena rest = arena;
     double *saved[W] = {};
     for (int i = 0; i < block.lanes; ++i) {
@@ -133,7 +133,7 @@ mask Positions::settle(mask coarse, Carried &carried, Outcome &out) {
         out.error = select(coarse, error, out.error);
         wanted = wanted & ~less_equal(error, carried.accepted());
         if (!any(wanted)) break;
-        const Outcome again = solve_positions(block, x, call, carried, wanted, false, true);
+        const NewtonOutcome again = solve_positions(block, x, call, carried, wanted, false, true);
         const mask moved = again.converged & wanted;
         move_atoms(block, x, moved, r, {}, 0);
         for (long k = 0; k < block.n; ++k) x.tau[k] = total[k] + keep(moved, x.tau[k]);
@@ -161,7 +161,7 @@ mask Positions::solve_extended(mask coarse, Carried &carried) {
 
 // Moves the atoms of the lanes that have converged, and writes their other outputs. `moved`: D has been moved by all
 // corrections, some of them larger than what they add up to, and has their roundings: so look at the bonds.
-void Positions::finish(Outcome &out, Carried &carried, bool moved) {
+void Positions::finish(NewtonOutcome &out, Carried &carried, bool moved) {
     mask coarse = moved ? out.converged : coarse_moves(block, x, carried, out.converged);
     if (__builtin_expect(any(coarse), 0)) {
         extended_lanes = extended_lanes | solve_extended(coarse, carried);
@@ -196,7 +196,7 @@ void Positions::solve() {
     if (call.guess) load_guess(block, call, x);
     const Source source = {&call.box, &r};
     Carried carried(block, x, call, source);
-    Outcome out = solve_positions(block, x, call, carried, all, call.guess);
+    NewtonOutcome out = solve_positions(block, x, call, carried, all, call.guess);
     finish(out, carried, false);
     mask rest = all & ~(out.converged | out.untouched | extended_lanes);
     if (__builtin_expect(!any(rest), 1)) return;
@@ -218,7 +218,7 @@ HOL_INLINE vec3 image_of(const Box &box, const vec3 &d) {
 static void gather_bonds(const Block &block, const PositionsCall &call, const AtomLists &lists, const Newton &x) {
     const AtomLists at = lists;
     const double *const r_ref = base_of(call.r_ref), *const r = base_of(call.r), *const v = base_of(call.v);
-    const bool boxed = call.box.shape != Box::none || call.box_ref.shape != Box::none;
+    const bool boxed = call.box.lattice != Box::none || call.box_ref.lattice != Box::none;
     vec3 b0 = gather(r_ref, at, 0), r0 = gather(r, at, 0);
     for (long k = 0; k < block.n; ++k) {
         at.fetch(k, block.list_ahead, r_ref, r, v);
@@ -229,8 +229,8 @@ static void gather_bonds(const Block &block, const PositionsCall &call, const At
         r0 = r1;
     }
     for (long k = 0; boxed && k < block.n; ++k) {
-        if (call.box_ref.shape != Box::none) x.b[k] = image_of(call.box_ref, x.b[k]);
-        if (call.box.shape != Box::none) x.D[k] = image_of(call.box, x.D[k]);
+        if (call.box_ref.lattice != Box::none) x.b[k] = image_of(call.box_ref, x.b[k]);
+        if (call.box.lattice != Box::none) x.D[k] = image_of(call.box, x.D[k]);
     }
 }
 
@@ -243,7 +243,7 @@ bool listed_positions(const Block &block, const Lane *lane, const PositionsCall 
     if (call.guess) load_guess(block, call, x);
     const Source source = {&call.box, nullptr, base_of(call.r), at.atoms};
     Carried carried(block, x, call, source);
-    const Outcome out = solve_positions(block, x, call, carried, block.in_use(), call.guess);
+    const NewtonOutcome out = solve_positions(block, x, call, carried, block.in_use(), call.guess);
     const mask done = out.converged | out.untouched;
     if (any(~done) || any(coarse_moves(block, x, carried, out.converged))) return false;
     note_worst(block, x, call, done, out.error, tally);

@@ -62,9 +62,9 @@ struct Positions {
 
 private:
     mask extended_lanes = {};  // done by the extended-precision solver
-    mask settle(mask coarse, Carried &, Outcome &);
+    mask settle(mask coarse, Carried &, NewtonOutcome &);
     mask solve_extended(mask coarse, Carried &);
-    void finish(Outcome &, Carried &, bool moved);
+    void finish(NewtonOutcome &, Carried &, bool moved);
 };
 
 // Chains that have lists of atoms in packed arrays: the same, on atoms read where the lists say. True if the block is

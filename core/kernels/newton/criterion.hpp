@@ -15,7 +15,7 @@ class Carried {
 public:
     Carried(const Block &block, const Newton &x, const PositionsCall &call, const Source &r)
         : block_(block), x_(x), r_(r), tolerance_(call.tolerance), rounding_(rounding_of_bonds(call)),
-          worst_trial_(call.worst_trial), boxed_(call.box.shape != Box::none) {}
+          worst_trial_(call.worst_trial), boxed_(call.box.lattice != Box::none) {}
 
     void know_largest(vec coordinate) {
         largest_ = coordinate;
@@ -70,7 +70,7 @@ private:
     vec largest_ = {};
 };
 
-struct Outcome {
+struct NewtonOutcome {
     mask untouched, converged;
     vec error;
     int64_t solves;

@@ -9,12 +9,12 @@ namespace holonomic::HOL_ISA {
 
 // Newton's method on the lanes in `wanted`, from tau = 0 or the caller's guess in tau.
 template <Same masses, Same a, int fixed = 0>
-HOL_INLINE Outcome iterate(const Block &block, Newton &x, const PositionsCall &call, Carried &carried, mask wanted,
-                           bool guess, bool extended) {
-    Outcome out = {};
+HOL_INLINE NewtonOutcome iterate(const Block &block, Newton &x, const PositionsCall &call, Carried &carried,
+                                 mask wanted, bool guess, bool extended) {
+    NewtonOutcome out = {};
     const vec done = splat(wanted_error(call));
     // Functions that are not known here get a copy: x itself stays in registers.
-    const auto renew_factors = [&](Factors factors, mask which) HOL_FORCED {
+    const auto renew_factors = [&](FactorsOf factors, mask which) HOL_FORCED {
         const Newton copy = x;
         if (fixed > 0 && factors == renewed_factors) return renew<masses, a, fixed>(block, copy, which);
         return renew(block, copy, factors, which);
@@ -98,7 +98,7 @@ HOL_INLINE bool tries_two_bonds(const PositionsCall &call) { return call.max_ite
 
 // Newton's method on any lanes: chains of one or two bonds by short.hpp, and iterate() on what that leaves. extended:
 // with new factors at every step, D becomes the moved bonds.
-Outcome solve_positions(const Block &, Newton &, const PositionsCall &, Carried &, mask wanted, bool guess,
-                        bool extended = false);
+NewtonOutcome solve_positions(const Block &, Newton &, const PositionsCall &, Carried &, mask wanted, bool guess,
+                              bool extended = false);
 
 }  // namespace holonomic::HOL_ISA

@@ -13,7 +13,7 @@ enum WindowResult { window_failed, window_untouched, window_solved };
 
 // The lengths at the ends of a part must be within the tolerance with the multipliers of its neighbour, too. A guess
 // does not help: it knows of the pulls beyond the ends of a part, which are not there.
-HOL_INLINE PositionsCall call_for_pieces(const PositionsCall &call) {
+HOL_INLINE PositionsCall call_for_parts(const PositionsCall &call) {
     PositionsCall strict = call;
     strict.tolerance = call.tolerance / 8;
     strict.v = AtomArray{};

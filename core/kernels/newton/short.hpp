@@ -10,8 +10,8 @@ namespace holonomic::HOL_ISA {
 // A chain of one bond in closed form: with sigma = D.D - a^2, D - s b has the length a for
 // s = sigma / (D.b + sqrt((D.b)^2 - b.b sigma)), and tau = s / (w_0 + w_1).
 template <Same masses>
-HOL_INLINE Outcome solve_single_bonds(const Newton &x, Carried &carried, mask wanted) {
-    Outcome out = {};
+HOL_INLINE NewtonOutcome solve_single_bonds(const Newton &x, Carried &carried, mask wanted) {
+    NewtonOutcome out = {};
     const vec3 b = x.b[0], d = x.D[0];
     const vec w = times_w<masses>(x, 0, splat(1.0)) + times_w<masses>(x, 1, splat(1.0));
     const vec a2 = x.a2 ? x.a2[0] : x.a2_uniform, db = dot(d, b);
@@ -76,17 +76,17 @@ struct TwoBonds {
         return c;
     }
     // M and 1 / (2 det).
-    struct Factors {
+    struct FactorsOf {
         vec m00, m01, m10, m11, r, whole;
         HOL_FORCED vec part() const { return mul_add(m00, m11, -(m01 * m10)); }
     };
-    HOL_STATIC void solve(const Factors &f, const vec *y, vec *tau) {
+    HOL_STATIC void solve(const FactorsOf &f, const vec *y, vec *tau) {
         const vec y0 = y[0], y1 = y[1];
         tau[0] = f.r * mul_add(f.m11, y0, -(f.m01 * y1));
         tau[1] = f.r * mul_add(f.m00, y1, -(f.m10 * y0));
     }
-    HOL_FORCED Factors factors(vec h00, vec h01, vec h10, vec h11) const {
-        Factors f;
+    HOL_FORCED FactorsOf factors(vec h00, vec h01, vec h10, vec h11) const {
+        FactorsOf f;
         f.m00 = s0 * h00;
         f.m11 = s1 * h11;
         f.m01 = -(w * h01);
@@ -95,15 +95,15 @@ struct TwoBonds {
         f.r = splat(0.5) / f.part();
         return f;
     }
-    HOL_FORCED Factors inverse() const { return factors(g00, g01, g10, g11); }
-    HOL_FORCED Factors inverse(const Change &c) const {
+    HOL_FORCED FactorsOf inverse() const { return factors(g00, g01, g10, g11); }
+    HOL_FORCED FactorsOf inverse(const Change &c) const {
         return factors(g00 + c.p00, g01 + c.p01, g10 + c.p10, g11 + c.p11);
     }
 };
 
 // The lanes in `wanted`, into tau. Those that are neither converged nor untouched need iterate().
 template <Same masses, Same a>
-HOL_INLINE Outcome solve_two_bonds(Newton &x, Carried &carried, mask wanted, int most) {
+HOL_INLINE NewtonOutcome solve_two_bonds(Newton &x, Carried &carried, mask wanted, int most) {
     const vec3 b0 = x.b[0], b1 = x.b[1], D0 = x.D[0], D1 = x.D[1];
     const vec one = splat(1.0), w = times_w<masses>(x, 1, one);
     TwoBonds m;
@@ -115,11 +115,11 @@ HOL_INLINE Outcome solve_two_bonds(Newton &x, Carried &carried, mask wanted, int
         m.sigma[k] = length_error<a>(x, k, false, x.D[k], worst);
         m.per_a2[k] = a == same || (a == either && !x.a2) ? x.per_a2_uniform : x.per_a2[k];
     }
-    Outcome out = {};
+    NewtonOutcome out = {};
     // As in the elimination, the error is NaN if a reference is.
     const vec before = largest_error<a>(x, worst, (m.sigma[0] + m.sigma[1]) + (m.g00 + m.g11));
     out.untouched = wanted & carried.within(before, one);
-    const TwoBonds::Factors f = m.inverse();
+    const TwoBonds::FactorsOf f = m.inverse();
     const mask open = less(two_bonds_part * f.whole, f.part());
     mask unsure = wanted & open;
     vec tau[2];

@@ -4,7 +4,7 @@
 
 namespace holonomic::HOL_ISA {
 
-vec renew(const Block &block, const Newton &x, Factors factors, mask which) {
+vec renew(const Block &block, const Newton &x, FactorsOf factors, mask which) {
     if (factors == extended_factors) return eliminate<either, either, extended_factors>(block, x, which);
     return choose(
         [&](auto masses, auto a) { return eliminate<same_if(masses), same_if(a), renewed_factors>(block, x, which); },
@@ -26,7 +26,7 @@ void substitute_back_in(const Block &block, const Newton &x, bool first, bool se
 }
 
 // Adds the outcome of the lanes in `which`.
-static void join(Outcome &out, const Outcome &more, mask which) {
+static void join(NewtonOutcome &out, const NewtonOutcome &more, mask which) {
     out.untouched = out.untouched | more.untouched;
     out.converged = out.converged | more.converged;
     out.error = select(which, more.error, out.error);
@@ -34,17 +34,17 @@ static void join(Outcome &out, const Outcome &more, mask which) {
 }
 
 // Solves the lanes of two bonds in `longer`, and takes out of it those that are done.
-static Outcome try_two_bonds(Newton &x, Carried &carried, mask &longer, int most) {
-    const Outcome out = solve_two_bonds<either, either>(x, carried, longer & less(x.lengths, splat(2.5)), most);
+static NewtonOutcome try_two_bonds(Newton &x, Carried &carried, mask &longer, int most) {
+    const NewtonOutcome out = solve_two_bonds<either, either>(x, carried, longer & less(x.lengths, splat(2.5)), most);
     longer = longer & ~(out.converged | out.untouched);
     return out;
 }
 
-Outcome solve_positions(const Block &block, Newton &x, const PositionsCall &call, Carried &carried, mask wanted,
-                        bool guess, bool extended) {
+NewtonOutcome solve_positions(const Block &block, Newton &x, const PositionsCall &call, Carried &carried, mask wanted,
+                              bool guess, bool extended) {
     const mask single = wanted & less(x.lengths, splat(1.5));
     mask longer = wanted & ~single;
-    Outcome out = {}, two = {};
+    NewtonOutcome out = {}, two = {};
     vec tau[2] = {};
     if (!extended && !guess && tries_two_bonds(call) && any(longer & less(x.lengths, splat(2.5)))) {
         two = try_two_bonds(x, carried, longer, call.max_iterations);

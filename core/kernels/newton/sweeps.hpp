@@ -1,7 +1,7 @@
 // The sweeps of Newton's method up and down the chains of a block.
 #pragma once
 
-#include "core/kernels/eliminate/remainder.hpp"
+#include "core/kernels/eliminate/effective_mass.hpp"
 #include "core/kernels/memory/prefetch.hpp"
 #include "core/kernels/newton/system.hpp"
 
@@ -82,14 +82,14 @@ HOL_INLINE vec largest_error(const Newton &x, vec worst, vec y) {
     return mul_add(y, vec{}, relative_error<a>(x, worst));
 }
 
-enum Factors { first_factors, renewed_factors, extended_factors };
+enum FactorsOf { first_factors, renewed_factors, extended_factors };
 
 // Eliminates with the Jacobian at D and substitutes forward. Returns the largest error. E is a fraction over four
 // bonds, as in Sweep.
 //   first_factors    D is as it was loaded; all lanes get factors
 //   renewed_factors  D moved by the corrections so far; the lanes in `which` get factors
 //   extended_factors  D as it stands; the lanes in `which`; a division per bond, and nothing that cancels
-template <Same masses, Same a, Factors factors, int fixed = 0>
+template <Same masses, Same a, FactorsOf factors, int fixed = 0>
 HOL_INLINE vec eliminate(const Block &block, const Newton &x, mask which) {
     constexpr bool moved = factors == renewed_factors, all = factors == first_factors,
                    extended = factors == extended_factors;
@@ -97,7 +97,7 @@ HOL_INLINE vec eliminate(const Block &block, const Newton &x, mask which) {
     Mover<masses> mover(x);
     vec3 d = moved ? mover.bond(x, 0) : x.D[0];
     vec worst = {}, y = {}, down = {}, last = {}, q = dot(d, x.b[0]);
-    Column e = {times_w<masses>(x, 0, q), splat(1.0)};
+    Fraction e = {times_w<masses>(x, 0, q), splat(1.0)};
     const auto bond = [&](long k, bool ragged) HOL_FORCED {
         Row &row = x.row[k];
         const vec F1 = e.next(times_w<masses>(x, k + 1, q)), rF = splat(1.0) / F1, rP = e.F * rF;
@@ -147,7 +147,7 @@ HOL_INLINE vec eliminate(const Block &block, const Newton &x, mask which) {
 }
 
 // The same for chains of any length, masses and lengths, so that the common case stays short.
-vec renew(const Block &, const Newton &, Factors, mask which);
+vec renew(const Block &, const Newton &, FactorsOf, mask which);
 template <Same masses, Same a, int fixed>
 HOL_NOINLINE vec renew(const Block &block, const Newton &x, mask which) {
     return eliminate<masses, a, renewed_factors, fixed>(block, x, which);

@@ -13,13 +13,13 @@
 
 namespace holonomic::HOL_ISA {
 
-static mask forward_forces(const Block &block, const Reader &in, const System &s, mask &calm) {
+static mask forward_forces(const Block &block, const Reader &in, const ChainSystem &s, mask &calm) {
     return block.uniform_w ? forward<true, false>(block, in, s, nullptr, calm)
                            : forward<false, false>(block, in, s, nullptr, calm);
 }
 
 // With compensated products of unrounded bond vectors, which are good in all lanes.
-static mask forward_extended(const Block &block, const Reader &in, const System &s) {
+static mask forward_extended(const Block &block, const Reader &in, const ChainSystem &s) {
     in.load(0, block.n, s.D, s.D_low, s.t);
     block.uniform_w ? forward_extended<true>(block, s) : forward_extended<false>(block, s);
     return ~none();
@@ -31,7 +31,7 @@ static inline bool listed_forces(const Block &block, const Lane *lane, const For
         !listed(block, lane))
         return false;
     const AtomLists at(lane);
-    const System s(block.n, arena);
+    const ChainSystem s(block.n, arena);
     const Reader in(block, call.box, terms_of(call.v.x, call.f.x), at, call.r, call.v, call.f);
     mask calm;
     const mask good = forward_forces(block, in, s, calm);
@@ -46,7 +46,7 @@ static inline bool listed_forces(const Block &block, const Lane *lane, const For
 }
 
 // Writes the outputs of the lanes in `which`, from t.
-static void finish_forces(const Block &block, const ForcesCall &call, const System &s, mask which, const Packed &g,
+static void finish_forces(const Block &block, const ForcesCall &call, const ChainSystem &s, mask which, const Packed &g,
                           Update update, Arena arena, Tally &tally) {
     if (call.lambda) store_bonds(block, s.t, splat(0.5), which, call.lambda);
     if (call.tension) {
@@ -63,7 +63,7 @@ static void forces_block(const Block &block, const Lane *lane, const ForcesCall 
     const Packed r = open(call.r, block, lane, arena, true), v = open(call.v, block, lane, arena, true);
     const Packed f = open(call.f, block, lane, arena, true), g = open(call.g, block, lane, arena, false);
     const Update update = call.add && in_place(call.g, block) ? add_ : write_;  // else unstage() adds
-    const System s(block.n, arena);
+    const ChainSystem s(block.n, arena);
     const int terms = terms_of(call.v.x, call.f.x);
     mask calm, good = forward_forces(block, Reader(block, call.box, terms, r, v, f), s, calm);
     const bool plain = block.lanes == W && !any(~(good & calm));
@@ -90,19 +90,19 @@ static void forces_block(const Block &block, const Lane *lane, const ForcesCall 
 }
 
 // Bonds D[k] of W molecules and their right-hand sides t[k].
-template <bool uniform, bool boxed, class Place, class Array>
-HOL_INLINE void load_sides(const Block &block, const Box &box, const Place &place, const Array &r, const Array &v,
+template <bool uniform, bool boxed, class View, class Array>
+HOL_INLINE void load_sides(const Block &block, const Box &box, const View &view, const Array &r, const Array &v,
                            const Array &f, vec3 *D, vec *t) {
-    constexpr int N = Place::bonds;
+    constexpr int N = View::bonds;
     vec e[vectors_of<N>];
     vec3 dv[N] = {}, *const x = reinterpret_cast<vec3 *>(e);
-    load_bonds<boxed, false>(box, place, r, e, D);
+    load_bonds<boxed, false>(box, view, r, e, D);
     if (v) {
-        load_molecules(place, v, e);
+        load_molecules(view, v, e);
         HOL_UNROLL
         for (int k = 0; k < N; ++k) dv[k] = x[k + 1] - x[k];
     }
-    load_molecules(place, f, e);
+    load_molecules(view, f, e);
     vec3 df[N];
     HOL_UNROLL
     for (int k = 0; k < N; ++k) df[k] = uniform ? x[k + 1] - x[k] : block.w[k + 1] * x[k + 1] - block.w[k] * x[k];
@@ -117,25 +117,25 @@ HOL_INLINE void load_sides(const Block &block, const Box &box, const Place &plac
 }
 
 // Does molecules from `first` on. Returns the first one that is not done. `given`: the block of a regular unit.
-template <class Place, bool uniform, bool boxed, bool virial>
+template <class View, bool uniform, bool boxed, bool virial>
 static int64_t forces_of_molecules(const ForcesCall &call, const Unit &unit, const Block &given, int64_t first,
                                    Tally &tally) {
-    constexpr int N = Place::bonds;
-    const auto r = Place::array(call.r), v = Place::array(call.v), f = Place::array(call.f), g = Place::array(call.g);
-    BlockMasses<Place> masses(given);
+    constexpr int N = View::bonds;
+    const auto r = View::array(call.r), v = View::array(call.v), f = View::array(call.f), g = View::array(call.g);
+    BlockMasses<View> masses(given);
     const Block &block = masses.block;
-    const int64_t end = Place::end(unit, first);
-    for (int64_t n; (n = Place::next(first, end)) > 0; first += n) {
+    const int64_t end = View::end(unit, first);
+    for (int64_t n; (n = View::next(first, end)) > 0; first += n) {
         vec3 D[N];
         vec t[N], L[N + 1];
-        const Place place(unit, first, n);
-        masses.take(place);
-        place.fetch_next(r);
-        place.fetch_next(v);
-        place.fetch_next(f);
-        load_sides<uniform, boxed>(block, call.box, place, r, v, f, D, t);
-        const auto source = place.source(r, call.box);
-        Sweep<uniform, false, decltype(place.source(r, call.box))> sweep{block, source, System(D, t, L, nullptr)};
+        const View view(unit, first, n);
+        masses.take(view);
+        view.fetch_next(r);
+        view.fetch_next(v);
+        view.fetch_next(f);
+        load_sides<uniform, boxed>(block, call.box, view, r, v, f, D, t);
+        const auto source = view.source(r, call.box);
+        Sweep<uniform, false, decltype(view.source(r, call.box))> sweep{block, source, ChainSystem(D, t, L, nullptr)};
         HOL_UNROLL
         for (int k = 0; k < N; ++k)
             sweep.step(
@@ -144,8 +144,8 @@ static int64_t forces_of_molecules(const ForcesCall &call, const Unit &unit, con
         backward(0, N, t, L);
         if (virial || (N >= fewest_with_virial && __builtin_expect(call.virial, 0)))
             count_virial<N>(D, t, n, splat(1.0), tally);
-        if (g) store_pulls(D, t, place, g, call.add);
-        if (call.lambda) store_multipliers(place, t, splat(0.5), call.lambda);
+        if (g) store_pulls(D, t, view, g, call.add);
+        if (call.lambda) store_multipliers(view, t, splat(0.5), call.lambda);
     }
     return first;
 }
@@ -153,11 +153,11 @@ static int64_t forces_of_molecules(const ForcesCall &call, const Unit &unit, con
 static int64_t small_forces(const ForcesCall &call, const Unit &unit, Block &block, int64_t first, Tally &tally) {
     if (!call.f.x || call.tension) return first;
     const bool packed = call.r.packed && (!call.v.x || call.v.packed) && call.f.packed && (!call.g.x || call.g.packed);
-    const bool boxed = call.box.shape != Box::none;
-    const auto kernel = [&](auto place, auto uniform, auto in_box) {
-        typedef typename decltype(place)::type Place;
-        return with_virial_or_not<Place, in_box>(call.virial, [&](auto virial, auto box) {
-            return forces_of_molecules<Place, uniform, box, virial>(call, unit, block, first, tally);
+    const bool boxed = call.box.lattice != Box::none;
+    const auto kernel = [&](auto view, auto uniform, auto in_box) {
+        typedef typename decltype(view)::type View;
+        return with_virial_or_not<View, in_box>(call.virial, [&](auto virial, auto box) {
+            return forces_of_molecules<View, uniform, box, virial>(call, unit, block, first, tally);
         });
     };
     if (packed) return any_molecules(unit, block, first, boxed, true, kernel);
@@ -166,7 +166,7 @@ static int64_t small_forces(const ForcesCall &call, const Unit &unit, Block &blo
 
 // Arrays that are not packed. False if nothing has been done.
 static bool forces_in_parts(const ForcesCall &call, const Unit &unit, double *scratch, Tally &tally) {
-    if (call.f.x && !call.tension && reads_columns(call) && fit_columns(unit, call.box.shape != Box::none))
+    if (call.f.x && !call.tension && reads_columns(call) && fit_columns(unit, call.box.lattice != Box::none))
         return false;
     return in_packed_parts(call, unit, tally, [=](const ForcesCall &c, const Unit &u, Tally &own) {
         for_each_block(c, u, scratch, own, forces_block, small_forces);

@@ -82,7 +82,7 @@ void metric(const MetricCall &call, const Unit &unit, double *scratch, Tally &ta
 }
 
 // Keeps the forces of a window until all windows are known to be good: packed vectors of each lane's atoms, and which
-// of these is the first that is the piece's own.
+// of these is the first that is the part's own.
 struct KeptForces {
     Packed forces;
     double *first_own;
@@ -102,7 +102,7 @@ int64_t long_metric_bytes(int64_t n_bonds) {
 static bool metric_window(const MetricCall &call, const Lane &lane, int64_t j, const KeptForces &kept, Arena arena,
                           Tally &tally) {
     Window window;
-    // The force on a piece's last atom is t phi of the bond behind it less that of its own last bond. That phi has h of
+    // The force on a part's last atom is t phi of the bond behind it less that of its own last bond. That phi has h of
     // the joint at its far end, too, and h the deficit f of the bond behind the joint: the margin counts from there.
     if (!open_window(call.r, call.box, lane, j, 1, arena, window)) return false;
     const Block &block = window.block;
@@ -123,7 +123,7 @@ bool long_metric(const MetricCall &call, const Lane &lane, const LongTeam &team,
     Tally sum = empty_tally(), unused = empty_tally();
     for_each_window(team, cut.blocks, sum, [&](int64_t j, double *scratch, Tally &part) {
         if (__atomic_load_n(&failed, __ATOMIC_RELAXED)) return;
-        if (!metric_window(call, lane, j, KeptForces(store, cut, j), Arena(scratch, longest_piece), part))
+        if (!metric_window(call, lane, j, KeptForces(store, cut, j), Arena(scratch, longest_cut), part))
             __atomic_store_n(&failed, true, __ATOMIC_RELAXED);
     });
     if (failed) return false;

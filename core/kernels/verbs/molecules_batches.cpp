@@ -52,12 +52,12 @@ static inline void leave_flagged(const Call &call, const TreeBatch &f, const Mol
 template <class Call>
 static inline void solve_batches(const Call &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
     const bool packed = are_packed(call);
-    const Sides sides = sides_of(call);
+    const RightHandSides sides = right_hand_sides_of(call);
     NextMolecules ahead = next_of(call);
     for_each_batch(unit, scratch, ahead, [&](const TreeBatch &f, const MoleculeLane *lane, Memory<vec> memory) {
         BatchLinear z(f, lane, packed, call.box, call.r, sides.in, sides.terms, memory);
         unsigned rest;
-        if (f.n_pieces > 0) {
+        if (f.n_tiles > 0) {
             const LargeTree tree(z, unit.team, memory);
             rest = solve_linear(call, tree, tally, [] {});
         } else {
@@ -84,11 +84,11 @@ void batches_positions(const PositionsCall &call, const MoleculeUnit &unit, doub
         BatchNewton newton(f, lane, packed, memory);
         BatchPositions lanes = {{call, lane, tally}, newton, ahead};
         unsigned rest;
-        if (f.n_pieces > 0) {
+        if (f.n_tiles > 0) {
             const LargeTreeNewton one{newton, unit.team, reinterpret_cast<LargeTreeNewton::Found *>(memory.next)};
             memory.next += LargeTreeNewton::bytes(f) / static_cast<int64_t>(sizeof(double));
             LargeTreePositions tree = {{call, lane, tally}, one, lanes};
-            rest = solve_positions(tree, Flag{true}, [] {});
+            rest = solve_positions(tree, ScalarMask{true}, [] {});
         } else {
             rest = solve_positions(lanes, first_lanes(f.n_trees), [&] { ahead.fetch(); });
         }

@@ -27,7 +27,7 @@ static void forces_of_blocks(const ForcesCall &call, const MoleculeUnit &unit, d
                                scratch);
     }
     NextMolecules ahead = next_of(call);
-    const LinearWork<ForcesCall> work = {call, *unit.elimination, way, packed, tally, unit.team, ahead};
+    const LinearOfBlocks<ForcesCall> work = {call, *unit.elimination, way, packed, tally, unit.team, ahead};
     const StarForcesVerb stars = {call, tally};
     if (way == Way::star && (do_stars<3>(stars, work, unit, scratch) || do_stars<4>(stars, work, unit, scratch)))
         return;
@@ -52,7 +52,7 @@ void molecules_solve(const SolveCall &call, const MoleculeUnit &unit, double *sc
         return solve_triangles(TriangleLinearVerb(triangles, nullptr, &call, tally), unit, packed, false, scratch);
     }
     NextMolecules ahead = next_of(call);
-    const LinearWork<SolveCall> work = {call, *unit.elimination, way, packed, tally, unit.team, ahead};
+    const LinearOfBlocks<SolveCall> work = {call, *unit.elimination, way, packed, tally, unit.team, ahead};
     for_each_block(unit, scratch, ahead, work);
 }
 

@@ -8,27 +8,27 @@ namespace holonomic::HOL_ISA::graph {
 
 // Lanes that plain arithmetic answers for, once the equations are solved.
 template <class V>
-static inline unsigned good_lanes(Linear<V> &z) {
+static inline unsigned good_lanes(TreeLinear<V> &z) {
     const MaskOf<V> good = z.x.in_use() & ~less(z.x.margin, V{});
     return bits(good & finite_solution(z.x));
 }
 
 template <class V>
-static inline unsigned load_and_solve_lanes(Linear<V> &z, int terms, bool masses_known) {
+static inline unsigned load_and_solve_lanes(TreeLinear<V> &z, int terms, bool masses_known) {
     if (!masses_known) masses_by_slot(z.x.s, z.x.lane, z.x.w);
     Loader<V>{z, terms}.load();
     z.factorize_and_solve();
     return good_lanes(z);
 }
-unsigned load_and_solve(Linear<vec> &z, int terms, bool masses_known) {
+unsigned load_and_solve(TreeLinear<vec> &z, int terms, bool masses_known) {
     return load_and_solve_lanes(z, terms, masses_known);
 }
-unsigned load_and_solve(Linear<double> &z, int terms, bool masses_known) {
+unsigned load_and_solve(TreeLinear<double> &z, int terms, bool masses_known) {
     return load_and_solve_lanes(z, terms, masses_known);
 }
 
-void solve_for_rates(Linear<vec> &z) { z.solve_for_rates(); }
-void solve_for_rates(Linear<double> &z) { z.solve_for_rates(); }
+void solve_for_rates(TreeLinear<vec> &z) { z.solve_for_rates(); }
+void solve_for_rates(TreeLinear<double> &z) { z.solve_for_rates(); }
 
 template <class V>
 static inline unsigned factorize_and_prove(const LdlLinear<V> &x) {

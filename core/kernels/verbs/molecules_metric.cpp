@@ -14,14 +14,14 @@ namespace {
 
 void extended_metric(const MetricCall &call, const EliminationPlan &elimination, const MoleculeLane &lane,
                      double *scratch, Tally &tally) {
-    extended::Memory memory = {reinterpret_cast<char *>(scratch)};
+    extended::ByteArena memory = {reinterpret_cast<char *>(scratch)};
     const ExtendedPlan plan = extended::plan_of(*extended_order(elimination), memory);
     HOL_EXTENDED::extended::metric(call, plan, lane, reinterpret_cast<double *>(memory.next), tally);
 }
 
 // Shape: TreeMetric or RingMetric.
 template <template <class> class Shape>
-struct MetricWork {
+struct MetricOfBlocks {
     const MetricCall &call;
     const EliminationPlan &elimination;
     Tally &tally;
@@ -49,11 +49,11 @@ void molecules_metric(const MetricCall &call, const MoleculeUnit &unit, double *
     const EliminationPlan &elimination = *unit.elimination;
     NextMolecules ahead;  // its arithmetic takes longer than its memory
     if (elimination.way.metric == Way::tree) {
-        const MetricWork<TreeMetric> work = {call, elimination, tally};
+        const MetricOfBlocks<TreeMetric> work = {call, elimination, tally};
         return for_each_block(unit, scratch, ahead, work);
     }
     if (elimination.way.metric == Way::ring) {
-        const MetricWork<RingMetric> work = {call, elimination, tally};
+        const MetricOfBlocks<RingMetric> work = {call, elimination, tally};
         return for_each_block(unit, scratch, ahead, work);
     }
     for (int64_t i = 0; i < unit.count; ++i) extended_metric(call, elimination, molecule_of(unit, i), scratch, tally);

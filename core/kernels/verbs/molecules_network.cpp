@@ -17,7 +17,7 @@ int64_t network_bytes(const NetworkPlan &s) {
 template <class Call>
 static inline bool linear_network(const Call &call, const EliminationPlan &s, const MoleculeLane &lane, bool packed,
                                   const LongTeam *team, double *scratch, Tally &tally) {
-    const Sides sides = sides_of(call);
+    const RightHandSides sides = right_hand_sides_of(call);
     const NetLinear x(*s.network, lane, packed, team, call.box, call.r, sides.in, sides.terms, {scratch});
     if (solve_linear(call, x, tally, [] {})) return false;
     count_moved(tally, 0, x.rounds);
@@ -39,7 +39,7 @@ bool solve_network(const VelocitiesCall &call, const EliminationPlan &s, const M
 bool solve_network(const PositionsCall &call, const EliminationPlan &s, const MoleculeLane &lane, bool packed,
                    const LongTeam *team, double *scratch, Tally &tally) {
     NetPositions x(call, *s.network, s.fixed, lane, packed, team, {scratch}, tally);
-    return solve_positions(x, Flag{true}, [] {}) == 0;
+    return solve_positions(x, ScalarMask{true}, [] {}) == 0;
 }
 
 }  // namespace holonomic::HOL_ISA

@@ -16,7 +16,7 @@ using namespace graph;
 // place.
 template <class V>
 static int64_t block_bytes(const EliminationPlan &s) {
-    const int64_t linear = Linear<V>::values(s), newton = Newton<V>::values(s);
+    const int64_t linear = TreeLinear<V>::values(s), newton = TreeNewton<V>::values(s);
     return static_cast<int64_t>(sizeof(V)) * (linear > newton ? linear : newton);
 }
 
@@ -43,7 +43,7 @@ int64_t molecules_scratch_bytes(const EliminationPlan &s) {
 }
 
 // Blocks of molecules, those that have paths along these where they will do.
-struct BlockPositionsWork : PositionsWork {
+struct BlockPositionsWork : PositionsOfBlocks {
     template <class V>
     void block(const MoleculeLane *lane, int used, bool known, double *scratch) const {
         Way way = elimination.way.positions;

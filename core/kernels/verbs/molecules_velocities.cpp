@@ -17,7 +17,7 @@ static void velocities_of_blocks(const VelocitiesCall &call, const MoleculeUnit 
     if (way == Way::triangle)
         return for_each_triangle(TriangleVelocitiesVerb(call, tally), unit, packed, scratch, reads_columns(call));
     NextMolecules ahead = next_of(call);
-    const LinearWork<VelocitiesCall> work = {call, *unit.elimination, way, packed, tally, unit.team, ahead};
+    const LinearOfBlocks<VelocitiesCall> work = {call, *unit.elimination, way, packed, tally, unit.team, ahead};
     const StarVelocitiesVerb stars = {call, tally};
     if (way == Way::star && (do_stars<3>(stars, work, unit, scratch) || do_stars<4>(stars, work, unit, scratch)))
         return;

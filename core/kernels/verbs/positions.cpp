@@ -14,25 +14,25 @@ namespace holonomic::HOL_ISA {
 // Masses and lengths of blocks of N bonds for Newton's method. `uniform`: there is only one inverse mass, and one
 // length; else both have tables. No function that is called gets the memory of the bond vectors, so that these stay in
 // registers.
-template <class Place, bool uniform>
+template <class View, bool uniform>
 struct SmallNewton {
-    static constexpr int N = Place::bonds;
-    BlockMasses<Place> masses;
+    static constexpr int N = View::bonds;
+    BlockMasses<View> masses;
     const Block &block;
     vec w[N + 1], lengths[2 * N];
 
     SmallNewton(const Unit &unit, const Block &given, Newton &x) : masses(given), block(masses.block) {
-        if constexpr (!Place::loose && W == 1) {
+        if constexpr (!View::irregular && W == 1) {
             set(unit.lanes, x);
-        } else if constexpr (!Place::loose) {
+        } else if constexpr (!View::irregular) {
             Lane lane[W];
             for (int i = 0; i < W; ++i) lane[i] = unit.lanes[0];
             set(lane, x);
         }
     }
-    HOL_FORCED void take(const Place &place, Newton &x) {
-        if constexpr (Place::loose)
-            if (masses.take(place)) set(place.lane, x);
+    HOL_FORCED void take(const View &view, Newton &x) {
+        if constexpr (View::irregular)
+            if (masses.take(view)) set(view.lane, x);
     }
     HOL_FORCED void set(const Lane *lane, Newton &x) {
         Arena rest(reinterpret_cast<double *>(lengths), reinterpret_cast<double *>(lengths + 2 * N));
@@ -55,29 +55,29 @@ template <int N>
 constexpr int64_t small_scratch = vectors_per_bond *(N + 2 * W + 8);
 
 // What is asked of a call for every block, found once.
-template <class Place>
+template <class View>
 struct SmallCall {
-    typedef decltype(Place::array(AtomArray{})) Array;
+    typedef decltype(View::array(AtomArray{})) Array;
     const Box &box_ref, &box;
     const Array r_ref, r, v;
     double *const lambda;
     const double per_dt, per_dt2, factor;  // the last of multipliers, without the unit of masses
     explicit SmallCall(const PositionsCall &c)
-        : box_ref(c.box_ref), box(c.box), r_ref(Place::array(c.r_ref)), r(Place::array(c.r)), v(Place::array(c.v)),
+        : box_ref(c.box_ref), box(c.box), r_ref(View::array(c.r_ref)), r(View::array(c.r)), v(View::array(c.v)),
           lambda(c.lambda), per_dt(1 / c.dt), per_dt2(1 / (c.dt * c.dt)), factor(0.5 / (c.dt * c.dt)) {}
 };
 
 // The bond vectors of a block, and its atoms as they come: in a row only where there is a box.
-template <bool boxed, class Place>
-HOL_INLINE void load_positions(const SmallCall<Place> &call, const Place &place, const Newton &x, vec *atoms,
+template <bool boxed, class View>
+HOL_INLINE void load_positions(const SmallCall<View> &call, const View &view, const Newton &x, vec *atoms,
                                Carried &carried) {
-    constexpr int N = Place::bonds;
-    place.fetch_next(call.r_ref);
-    place.fetch_next(call.r);
-    place.fetch_next(call.v);
-    load_bonds<boxed, false>(call.box_ref, place, call.r_ref, atoms, x.b);
-    load_bonds<boxed, boxed || !Place::in_row>(call.box, place, call.r, atoms, x.D);
-    if ((!boxed && Place::packed) || (W == 1 && Place::in_row && call.box.shape == Box::none)) return;
+    constexpr int N = View::bonds;
+    view.fetch_next(call.r_ref);
+    view.fetch_next(call.r);
+    view.fetch_next(call.v);
+    load_bonds<boxed, false>(call.box_ref, view, call.r_ref, atoms, x.b);
+    load_bonds<boxed, boxed || !View::in_row>(call.box, view, call.r, atoms, x.D);
+    if ((!boxed && View::packed) || (W == 1 && View::in_row && call.box.lattice == Box::none)) return;
     vec largest = {};  // in a box the lengths of bonds say nothing of coordinates
     HOL_UNROLL
     for (int e = 0; e < 3 * (N + 1); ++e) largest = max(largest, abs(atoms[e]));
@@ -85,10 +85,10 @@ HOL_INLINE void load_positions(const SmallCall<Place> &call, const Place &place,
 }
 
 // Moves the atoms of a block. `some`: not in lanes that are `untouched`.
-template <bool uniform, bool some, class Place>
-HOL_INLINE void move_molecules(const SmallCall<Place> &call, const Place &place, const Newton &x, const vec *atoms,
+template <bool uniform, bool some, class View>
+HOL_INLINE void move_molecules(const SmallCall<View> &call, const View &view, const Newton &x, const vec *atoms,
                                mask untouched) {
-    constexpr int N = Place::bonds;
+    constexpr int N = View::bonds;
     const auto r = call.r, v = call.v;
     vec move[vectors_of<N>] = {}, moved[vectors_of<N>];
     vec3 before = {};
@@ -105,75 +105,75 @@ HOL_INLINE void move_molecules(const SmallCall<Place> &call, const Place &place,
         HOL_UNROLL
         for (int e = 0; e < 3 * (N + 1); ++e) move[e] = select(untouched, splat(-0.0), move[e]);
     }
-    if constexpr (Place::in_row) {
-        typedef typename Place::Lanes Lanes;
+    if constexpr (View::in_row) {
+        typedef typename View::Lanes Lanes;
         if (v)
-            store_rows<3 * (N + 1)>(move,
-                                    MoveSink<true, true, Lanes>{place.lanes_of(r), place.lanes_of(v), call.per_dt});
+            store_rows<3 * (N + 1)>(move, MoveSink<true, true, Lanes>{view.lanes_of(r), view.lanes_of(v), call.per_dt});
         else
-            store_rows<3 * (N + 1)>(move, MoveSink<true, false, Lanes>{place.lanes_of(r), {}, call.per_dt});
+            store_rows<3 * (N + 1)>(move, MoveSink<true, false, Lanes>{view.lanes_of(r), {}, call.per_dt});
     } else {
         HOL_UNROLL
         for (int e = 0; e < 3 * (N + 1); ++e) moved[e] = atoms[e] + move[e];
-        store_molecules<write_>(place, moved, r);
+        store_molecules<write_>(view, moved, r);
         if (v) {
-            load_molecules(place, v, moved);
+            load_molecules(view, v, moved);
             HOL_UNROLL
             for (int e = 0; e < 3 * (N + 1); ++e) moved[e] = mul_add(move[e], splat(call.per_dt), moved[e]);
-            store_molecules<write_>(place, moved, v);
+            store_molecules<write_>(view, moved, v);
         }
     }
 }
 
 // The same, out of the way: it would take the registers of blocks that move as a whole.
-template <bool uniform, class Place>
-HOL_NOINLINE void move_some_molecules(const SmallCall<Place> &call, const Place &place, const Newton &x,
-                                      const vec *atoms, mask untouched) {
-    move_molecules<uniform, true>(call, place, x, atoms, untouched);
+template <bool uniform, class View>
+HOL_NOINLINE void move_some_molecules(const SmallCall<View> &call, const View &view, const Newton &x, const vec *atoms,
+                                      mask untouched) {
+    move_molecules<uniform, true>(call, view, x, atoms, untouched);
 }
 
 // Moves the atoms of a block, but in lanes that are `untouched`, and writes its multipliers.
-template <bool uniform, class Place>
-HOL_INLINE void write_positions(const SmallCall<Place> &call, const Place &place, const Block &block, const Newton &x,
+template <bool uniform, class View>
+HOL_INLINE void write_positions(const SmallCall<View> &call, const View &view, const Block &block, const Newton &x,
                                 const vec *atoms, mask untouched) {
-    constexpr bool few = Place::bonds <= 2 || !Place::in_row;
+    constexpr bool few = View::bonds <= 2 || !View::in_row;
     if (few || __builtin_expect(!any(untouched), 1)) {
-        move_molecules<uniform, few>(call, place, x, atoms, untouched);
+        move_molecules<uniform, few>(call, view, x, atoms, untouched);
     } else if (bits(untouched) != all_lanes) {
         const Newton copy = x;
-        move_some_molecules<uniform>(call, place, copy, atoms, untouched);
+        move_some_molecules<uniform>(call, view, copy, atoms, untouched);
     }
-    if (call.lambda) store_multipliers(place, x.tau, splat(call.factor) / block.unit, call.lambda);
+    if (call.lambda) store_multipliers(view, x.tau, splat(call.factor) / block.unit, call.lambda);
 }
 
 // So many blocks in a row, all of whose molecules were right, say that the next ones may be, too. After a single one
 // the guess would often be wrong where the tolerance is about as large as what a step leaves.
 constexpr int enough_right = 2;
 
-template <bool uniform, bool boxed, class Place>
+template <bool uniform, bool boxed, class View>
 HOL_NOINLINE int64_t pass_over_right_ones(const PositionsCall &, const Unit &, const Block &, int64_t first,
                                           int64_t end);
 
 // Columns are read once: their largest coordinate is known.
-template <class Place, class Array>
-HOL_INLINE Source source_of(const Place &place, const Array &r, const Box &box) {
-    if constexpr (Place::packed)
-        return place.source(r, box);
+template <class View, class Array>
+HOL_INLINE Source source_of(const View &view, const Array &r, const Box &box) {
+    if constexpr (View::packed)
+        return view.source(r, box);
     else
         return {&box};
 }
 
-// How many molecules the next block has; 0: none is left. A look at all loose ones beforehand took a tenth of the time.
-template <class Place>
+// How many molecules the next block has; 0: none is left. A look at all irregular ones beforehand took a tenth of the
+// time.
+template <class View>
 HOL_INLINE int64_t next_block(const Unit &unit, int64_t first, int64_t end) {
-    const int64_t most = Place::next(first, end);
-    int64_t n = Place::loose ? 0 : most;
-    while (n < most && unit.lanes[first + n].n_bonds == Place::bonds) ++n;
+    const int64_t most = View::next(first, end);
+    int64_t n = View::irregular ? 0 : most;
+    while (n < most && unit.lanes[first + n].n_bonds == View::bonds) ++n;
     return n;
 }
 
 // How many of the first n lanes have been moved.
-HOL_INLINE int n_moved(const Outcome &out, int64_t n) {
+HOL_INLINE int n_moved(const NewtonOutcome &out, int64_t n) {
     return __builtin_popcount(bits(out.converged & first_lanes(static_cast<int>(n))));
 }
 
@@ -182,7 +182,7 @@ HOL_INLINE int n_moved(const Outcome &out, int64_t n) {
 // step undoes what the one before it did to the length.
 template <bool uniform, int N>
 HOL_INLINE bool solve_molecules(const Block &block, Newton &x, const PositionsCall &call, Carried &carried,
-                                Outcome &out) {
+                                NewtonOutcome &out) {
     constexpr Same all = same_if(uniform);
     const mask lanes = first_lanes(W);
     if (N == 1)
@@ -196,42 +196,42 @@ HOL_INLINE bool solve_molecules(const Block &block, Newton &x, const PositionsCa
 }
 
 // Notes the worst bond of a block for the report. Few blocks have one that is worse than what was before.
-template <class Place>
-HOL_NOINLINE void note_worst_of(const PositionsCall &call, const Place &place, Block &block, const Newton &x, vec error,
+template <class View>
+HOL_NOINLINE void note_worst_of(const PositionsCall &call, const View &view, Block &block, const Newton &x, vec error,
                                 Tally &tally) {
-    for (int i = 0; i < W; ++i) block.chain[i] = place.chain_of(i);
+    for (int i = 0; i < W; ++i) block.chain[i] = view.chain_of(i);
     note_worst(block, x, call, first_lanes(W), error, tally);
 }
-template <class Place>
-HOL_INLINE void note_block(const PositionsCall &call, const Place &place, Block &block, const Newton &x,
-                           const Outcome &out, Tally &tally) {
+template <class View>
+HOL_INLINE void note_block(const PositionsCall &call, const View &view, Block &block, const Newton &x,
+                           const NewtonOutcome &out, Tally &tally) {
     if (tally.worst_chain >= 0 && !any(~less(out.error, splat(tally.worst)))) return;
     const Newton copy = x;
-    note_worst_of(call, place, block, copy, out.error, tally);
+    note_worst_of(call, view, block, copy, out.error, tally);
 }
 
 // Single bonds, two blocks at a time: while one waits for its root and its quotient, the other is worked on. Ends
 // before a pair of blocks of which one needs more than this.
-template <class Place, bool uniform, bool boxed>
+template <class View, bool uniform, bool boxed>
 HOL_NOINLINE int64_t pairs_of_single_bonds(const PositionsCall &call, const Unit &unit, const Block &given,
                                            int64_t first, Tally &tally) {
-    const SmallCall<Place> arrays(call);
+    const SmallCall<View> arrays(call);
     vec memory[2][small_scratch<1>];
     Arena arena_a(reinterpret_cast<double *>(memory[0]), 1), arena_b(reinterpret_cast<double *>(memory[1]), 1);
     Newton x_a(1, arena_a), x_b(1, arena_b);
-    SmallNewton<Place, uniform> a(unit, given, x_a), b(unit, given, x_b);
-    const int64_t end = Place::end(unit, first);
+    SmallNewton<View, uniform> a(unit, given, x_a), b(unit, given, x_b);
+    const int64_t end = View::end(unit, first);
     int right = 0;
     for (; end - first >= 2 * W; first += 2 * W) {
-        const Place at_a(unit, first, W), at_b(unit, first + W, W);
+        const View at_a(unit, first, W), at_b(unit, first + W, W);
         const Source r_a = at_a.source(arrays.r, call.box), r_b = at_b.source(arrays.r, call.box);
         Carried carried_a(a.block, x_a, call, r_a), carried_b(b.block, x_b, call, r_b);
         vec atoms_a[vectors_of<1>], atoms_b[vectors_of<1>];
         load_positions<boxed>(arrays, at_a, x_a, atoms_a, carried_a);
         load_positions<boxed>(arrays, at_b, x_b, atoms_b, carried_b);
         constexpr Same all = same_if(uniform);
-        const Outcome out_a = solve_single_bonds<all>(x_a, carried_a, first_lanes(W)),
-                      out_b = solve_single_bonds<all>(x_b, carried_b, first_lanes(W));
+        const NewtonOutcome out_a = solve_single_bonds<all>(x_a, carried_a, first_lanes(W)),
+                            out_b = solve_single_bonds<all>(x_b, carried_b, first_lanes(W));
         if (any(~(out_a.converged | out_a.untouched) | ~(out_b.converged | out_b.untouched) |
                 coarse_moves<all, 1>(a.block, x_a, carried_a, out_a.converged, coarse_part) |
                 coarse_moves<all, 1>(b.block, x_b, carried_b, out_b.converged, coarse_part)))
@@ -242,64 +242,64 @@ HOL_NOINLINE int64_t pairs_of_single_bonds(const PositionsCall &call, const Unit
         count_moved(tally, moved, 1);
         right = moved ? 0 : right + 1;
         if (__builtin_expect(right >= enough_right, 0))
-            first = pass_over_right_ones<uniform, boxed, Place>(call, unit, given, first + 2 * W, end) - 2 * W;
+            first = pass_over_right_ones<uniform, boxed, View>(call, unit, given, first + 2 * W, end) - 2 * W;
     }
     return first;
 }
 
 // Does molecules from `first` on. Returns the first one that is not done.
-template <class Place, bool uniform, bool boxed, bool virial>
+template <class View, bool uniform, bool boxed, bool virial>
 HOL_NOINLINE int64_t positions_of_molecules(const PositionsCall &call, const Unit &unit, Block &given, int64_t first,
                                             Tally &tally) {
-    constexpr int N = Place::bonds;
-    const SmallCall<Place> arrays(call);
+    constexpr int N = View::bonds;
+    const SmallCall<View> arrays(call);
     vec memory[small_scratch<N>];
     Arena arena(reinterpret_cast<double *>(memory), N);
     Newton x(N, arena);
-    SmallNewton<Place, uniform> newton(unit, given, x);
+    SmallNewton<View, uniform> newton(unit, given, x);
     const Block &block = newton.block;
-    const int64_t end = Place::loose ? unit.count : Place::end(unit, first);
+    const int64_t end = View::irregular ? unit.count : View::end(unit, first);
     int right = 0;
-    for (int64_t n; (n = next_block<Place>(unit, first, end)) > 0; first += n) {
-        const Place place(unit, first, n);
-        newton.take(place, x);
-        const Source r = source_of(place, arrays.r, call.box);
+    for (int64_t n; (n = next_block<View>(unit, first, end)) > 0; first += n) {
+        const View view(unit, first, n);
+        newton.take(view, x);
+        const Source r = source_of(view, arrays.r, call.box);
         Carried carried(block, x, call, r);
         vec atoms[vectors_of<N>];
-        Outcome out;
-        load_positions<boxed>(arrays, place, x, atoms, carried);
+        NewtonOutcome out;
+        load_positions<boxed>(arrays, view, x, atoms, carried);
         if (!solve_molecules<uniform, N>(block, x, call, carried, out)) break;
-        if (call.report) note_block(call, place, Place::alike ? given : newton.masses.own, x, out, tally);
-        write_positions<uniform>(arrays, place, block, x, atoms, out.untouched);
+        if (call.report) note_block(call, view, View::alike ? given : newton.masses.own, x, out, tally);
+        write_positions<uniform>(arrays, view, block, x, atoms, out.untouched);
         if (virial || (N >= fewest_with_virial && __builtin_expect(call.virial, 0)))
             count_virial<N>(x.b, x.tau, n, splat(arrays.per_dt2) / block.unit, tally);
         const int moved = n_moved(out, n);
         count_moved(tally, moved, out.solves);
         right = moved ? 0 : right + 1;
-        if (!Place::loose && __builtin_expect(right >= enough_right, 0) && !call.report)
-            first = pass_over_right_ones<uniform, boxed, Place>(call, unit, given, first + n, end) - n;
+        if (!View::irregular && __builtin_expect(right >= enough_right, 0) && !call.report)
+            first = pass_over_right_ones<uniform, boxed, View>(call, unit, given, first + n, end) - n;
     }
     return first;
 }
 
 // Once all molecules of a block were right as they came, the next ones may be, too: then their lengths are all that is
 // looked at. Returns the first molecule of a block in which one is not.
-template <bool uniform, bool boxed, class Place>
+template <bool uniform, bool boxed, class View>
 HOL_NOINLINE int64_t pass_over_right_ones(const PositionsCall &call, const Unit &unit, const Block &given,
                                           int64_t first, int64_t end) {
-    constexpr int N = Place::bonds;
+    constexpr int N = View::bonds;
     constexpr Same all = same_if(uniform);
-    const SmallCall<Place> arrays(call);
+    const SmallCall<View> arrays(call);
     vec memory[small_scratch<N>];
     Arena arena(reinterpret_cast<double *>(memory), N);
     Newton x(N, arena);
-    SmallNewton<Place, uniform> newton(unit, given, x);
-    for (int64_t n; (n = Place::next(first, end)) > 0; first += n) {
-        const Place place(unit, first, n);
-        const Source r = source_of(place, arrays.r, call.box);
+    SmallNewton<View, uniform> newton(unit, given, x);
+    for (int64_t n; (n = View::next(first, end)) > 0; first += n) {
+        const View view(unit, first, n);
+        const Source r = source_of(view, arrays.r, call.box);
         Carried carried(newton.block, x, call, r);
         vec atoms[vectors_of<N>], worst = {}, sum = {};
-        load_positions<boxed>(arrays, place, x, atoms, carried);
+        load_positions<boxed>(arrays, view, x, atoms, carried);
         HOL_UNROLL
         for (int k = 0; k < N; ++k) sum = sum + dot(x.D[k], x.b[k]) + length_error<all>(x, k, false, x.D[k], worst);
         // A reference that is no number is for the others to refuse.
@@ -307,7 +307,7 @@ HOL_NOINLINE int64_t pass_over_right_ones(const PositionsCall &call, const Unit 
         if (!call.lambda) continue;
         HOL_UNROLL
         for (int k = 0; k < N; ++k) x.tau[k] = vec{};
-        store_multipliers(place, x.tau, splat(1.0), call.lambda);
+        store_multipliers(view, x.tau, splat(1.0), call.lambda);
     }
     return first;
 }
@@ -320,15 +320,15 @@ static inline int64_t small_positions(const PositionsCall &call, const Unit &uni
     if (call.guess) return first;
     if (unit.lanes[unit.regular ? 0 : first].n_bonds == 2 && !tries_two_bonds(call)) return first;
     const bool packed = call.r.packed && call.r_ref.packed && (!call.v.x || call.v.packed);
-    const bool has_box = call.box.shape != Box::none || call.box_ref.shape != Box::none;
+    const bool has_box = call.box.lattice != Box::none || call.box_ref.lattice != Box::none;
     const bool one_length = !unit.lanes[0].length;
-    const auto kernel = [&](auto place, auto uniform, auto boxed) {
-        typedef typename decltype(place)::type Place;
-        if constexpr (Place::in_row && Place::bonds == 1 && W > 1)
+    const auto kernel = [&](auto view, auto uniform, auto boxed) {
+        typedef typename decltype(view)::type View;
+        if constexpr (View::in_row && View::bonds == 1 && W > 1)
             if (!call.report && !call.virial)
-                first = pairs_of_single_bonds<Place, uniform, boxed>(call, unit, block, first, tally);
-        return with_virial_or_not<Place, boxed>(call.virial, [&](auto virial, auto box) {
-            return positions_of_molecules<Place, uniform, box, virial>(call, unit, block, first, tally);
+                first = pairs_of_single_bonds<View, uniform, boxed>(call, unit, block, first, tally);
+        return with_virial_or_not<View, boxed>(call.virial, [&](auto virial, auto box) {
+            return positions_of_molecules<View, uniform, box, virial>(call, unit, block, first, tally);
         });
     };
     if (packed) return any_molecules(unit, block, first, has_box, one_length, kernel);

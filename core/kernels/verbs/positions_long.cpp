@@ -1,5 +1,5 @@
 // Position level of one long chain in windows (memory/cut.hpp). The kernel of short chains solves each. The result does
-// not rest on how far a margin is felt: inside a piece Newton's method has tested all lengths, and where two pieces
+// not rest on how far a margin is felt: inside a part Newton's method has tested all lengths, and where two parts
 // meet they are tested here before anything is written. The bonds of the reference are needed while atoms are moved: it
 // is not the array of the positions (core/positions.cpp). If windows can't do the chain, core hands it to positions()
 // as a unit of one.
@@ -13,10 +13,10 @@
 
 namespace holonomic::HOL_ISA {
 
-// Notes the largest error of the pieces without their margins, and the first bond that has it, if it exceeds that of
+// Notes the largest error of the parts without their margins, and the first bond that has it, if it exceeds that of
 // the tally. `seams`: the bonds on either side of a seam count, too. They can't while a neighbour has multipliers that
 // this window does not know.
-static void note_worst_of_pieces(const Newton &x, const Window &window, const Lane &lane, bool seams, Tally &tally) {
+static void note_worst_of_windows(const Newton &x, const Window &window, const Lane &lane, bool seams, Tally &tally) {
     const SegmentBlock &s = window.own;
     vec first = {}, end = {};
     for (int i = 0; i < W; ++i) {
@@ -32,7 +32,7 @@ static void note_worst_of_pieces(const Newton &x, const Window &window, const La
     }
 }
 
-// Finds the multipliers of the pieces and puts them into tau[n_bonds] of the chain.
+// Finds the multipliers of the parts and puts them into tau[n_bonds] of the chain.
 static WindowResult solve_window(const PositionsCall &call, const Lane &lane, int64_t j, double *tau, Arena arena,
                                  Tally &tally) {
     Window window;
@@ -40,19 +40,19 @@ static WindowResult solve_window(const PositionsCall &call, const Lane &lane, in
     const Block &block = window.block;
     const BondLengths a = bond_lengths(block, window.lane, arena);
     const SegmentBlock &s = window.own;
-    const PositionsCall strict = call_for_pieces(call);
+    const PositionsCall strict = call_for_parts(call);
     Positions positions(block, window.lane, strict, a, arena, tally);
     Newton &x = positions.x;
     const Source source = {&call.box, &positions.r};
     Carried carried(block, x, call, source);
     const mask all = first_lanes(W);
     positions.load();
-    // A guess does not help: it knows of the pulls beyond the ends of a piece, which are not there.
-    const Outcome out = solve_positions(block, x, strict, carried, all, false);
+    // A guess does not help: it knows of the pulls beyond the ends of a part, which are not there.
+    const NewtonOutcome out = solve_positions(block, x, strict, carried, all, false);
     const bool untouched = !any(all & ~out.untouched);
     if (!untouched && (any(all & ~out.converged) || any(coarse_moves(block, x, carried, all)))) return window_failed;
     if (call.report && any(less(splat(tally.worst), out.error)))
-        note_worst_of_pieces(x, window, lane, untouched, tally);
+        note_worst_of_windows(x, window, lane, untouched, tally);
     if (untouched) return window_untouched;
     if (out.solves > tally.iterations) tally.iterations = out.solves;
     if (window.even) {
@@ -66,7 +66,7 @@ static WindowResult solve_window(const PositionsCall &call, const Lane &lane, in
     return window_solved;
 }
 
-// Whether the multipliers of the pieces fit together.
+// Whether the multipliers of the parts fit together.
 static inline bool windows_fit(const PositionsCall &call, const Lane &lane, const double *tau, Arena arena,
                                Tally &tally) {
     const Cut cut = windows(lane.n_bonds);
@@ -87,7 +87,7 @@ static void finish_window(const PositionsCall &call, const Lane &lane, int64_t j
         for (int64_t k = from; k < end; ++k)
             call.lambda[lane.first_bond + k] = moved ? mul_add(factor, tau[k], 0.0) : 0.0;  // zeros as +0
     if (!moved) return;
-    Arena arena(scratch, longest_piece);
+    Arena arena(scratch, longest_cut);
     set_masses(s.block, s.lane, arena);
     Newton x(s.block, BondLengths{}, arena);
     load_bond_vectors(s.block, call.box_ref, open(call.r_ref, s.block, s.lane, arena, true), x.b);
@@ -106,7 +106,7 @@ static void finish_window(const PositionsCall &call, const Lane &lane, int64_t j
     };
     const Packed r = open_own(call.r), v = open_own(call.v);
     const mask all = first_lanes(W);
-    Block moved_atoms = own_block(s);  // atoms 1 .. own of the pieces, and the first one of the chain
+    Block moved_atoms = own_block(s);  // atoms 1 .. own of the parts, and the first one of the chain
     moved_atoms.n = s.block.n;         // the last atom of a lane is pulled by the bond behind it, too
     move_atoms(moved_atoms, x, all, r, v, 1 / call.dt, 1, x.tau[0] * x.b[0]);
     if (j == 0) move_first(x, 1, r, v, 1 / call.dt);
@@ -124,7 +124,7 @@ bool long_positions(const PositionsCall &call, const Lane &lane, const LongTeam 
         if (__atomic_load_n(&seen[window_failed], __ATOMIC_RELAXED)) return;
         // A window looks for the bond with its largest error only if no other window is known to have a larger one.
         const WindowResult result = worst.look(
-            lane.chain, part, [&] { return solve_window(call, lane, j, tau, Arena(scratch, longest_piece), part); });
+            lane.chain, part, [&] { return solve_window(call, lane, j, tau, Arena(scratch, longest_cut), part); });
         __atomic_store_n(&seen[result], true, __ATOMIC_RELAXED);
     });
     const bool solved = seen[window_solved];
@@ -132,7 +132,7 @@ bool long_positions(const PositionsCall &call, const Lane &lane, const LongTeam 
     bool fit = true;
     Tally unused = empty_tally();
     const auto test = [&](int64_t, double *scratch, Tally &) {
-        fit = windows_fit(call, lane, tau, Arena(scratch, longest_piece), sum);
+        fit = windows_fit(call, lane, tau, Arena(scratch, longest_cut), sum);
     };
     if (solved) for_each_window(team, 1, unused, test);
     if (!fit) return false;

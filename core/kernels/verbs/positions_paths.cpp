@@ -1,8 +1,8 @@
-// Position level of one large molecule along its paths (molecules/paths/plan.hpp): junctions, then pieces of paths,
+// Position level of one large molecule along its paths (molecules/paths/plan.hpp): junctions, then sections of paths,
 // then whether what they have found fits where they meet, and only then anything is written. As in a long chain
 // (positions_long.cpp) the result does not rest on how far a bond is felt: all lengths have been tested by then.
 #include "core/kernels/molecules/paths/junctions.hpp"
-#include "core/kernels/molecules/paths/pieces.hpp"
+#include "core/kernels/molecules/paths/sections.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
 namespace holonomic::HOL_ISA {
@@ -10,8 +10,8 @@ namespace holonomic::HOL_ISA {
 using namespace graph;
 
 static int64_t part_values(const PathPlan &plan) {
-    const int64_t junctions = junction_values(plan), pieces = scratch_doubles(longest_piece);
-    return junctions > pieces ? junctions : pieces;
+    const int64_t junctions = junction_values(plan), sections = scratch_doubles(longest_cut);
+    return junctions > sections ? junctions : sections;
 }
 static int64_t up_to_line(int64_t n) { return (n + most_lanes - 1) / most_lanes * most_lanes; }
 
@@ -25,14 +25,14 @@ static void solve(PathsWork &x, Tally &sum) {
         return solve_junctions(x, junctions_of_block(x.plan, j), scratch, part);
     });
     if (x.has(window_failed)) return;
-    solve_parts(x, n_piece_blocks(x.plan), sum,
-                [&](int64_t j, double *scratch, Tally &part) { return solve_pieces(x, j, scratch, part); });
+    solve_parts(x, n_section_blocks(x.plan), sum,
+                [&](int64_t j, double *scratch, Tally &part) { return solve_sections(x, j, scratch, part); });
 }
 
 static bool all_fit(PathsWork &x, Tally &sum) {
-    for_parts(x, n_piece_blocks(x.plan), sum, [&](int64_t j, double *scratch, Tally &part) {
-        for (int64_t i = j * W; i < x.plan.n_pieces && i < (j + 1) * W; ++i)
-            if (!piece_fits(x, x.plan.piece[i], Arena(scratch, longest_piece), part)) x.note(window_failed);
+    for_parts(x, n_section_blocks(x.plan), sum, [&](int64_t j, double *scratch, Tally &part) {
+        for (int64_t i = j * W; i < x.plan.n_sections && i < (j + 1) * W; ++i)
+            if (!section_fits(x, x.plan.section[i], Arena(scratch, longest_cut), part)) x.note(window_failed);
     });
     return !x.has(window_failed);
 }
@@ -52,8 +52,8 @@ static void add_virial_of_junctions(const PathsWork &x, const EliminationPlan &s
 }
 
 static void write_all(PathsWork &x, const EliminationPlan &s, bool moved, Tally &sum) {
-    for_parts(x, n_piece_blocks(x.plan), sum,
-              [&](int64_t j, double *scratch, Tally &part) { finish_pieces(x, j, moved, scratch, part); });
+    for_parts(x, n_section_blocks(x.plan), sum,
+              [&](int64_t j, double *scratch, Tally &part) { finish_sections(x, j, moved, scratch, part); });
     for (int32_t k = 0; k < x.plan.n_bonds && x.call.lambda; ++k) write_lambda(x, x.plan.bond[k], 1, moved);
     if (!moved) return;
     move_junctions(x, s.fixed);
@@ -62,7 +62,7 @@ static void write_all(PathsWork &x, const EliminationPlan &s, bool moved, Tally 
 
 bool path_positions(const PositionsCall &call, const EliminationPlan &s, const MoleculeLane &molecule,
                     const LongTeam *team, double *scratch, Tally &tally) {
-    const PositionsCall strict = call_for_pieces(call);
+    const PositionsCall strict = call_for_parts(call);
     const bool packed = call.r.packed && call.r_ref.packed && (!call.v.x || call.v.packed);
     Vector3<double> *const move = reinterpret_cast<Vector3<double> *>(scratch + s.n_bonds);
     double *const work = scratch + up_to_line(s.n_bonds + 3 * static_cast<int64_t>(s.paths->n_atoms));

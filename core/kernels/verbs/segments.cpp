@@ -121,7 +121,7 @@ HOL_INLINE void store_segment_chunk(const Block &own, const SegmentOutputs &out,
 // Blocks are substituted in from the last to the first, so that those which were eliminated last are still in cache.
 // Distances from a block to the one before it, in vectors per atom and in what is kept of the bonds.
 static inline void find_block_before(const Cut &cut, int64_t j, SegmentBlock &s) {
-    static_assert(sizeof(Kept) == 3 * sizeof(vec), "as far apart as vectors of W atoms");
+    static_assert(sizeof(SegmentBond) == 3 * sizeof(vec), "as far apart as vectors of W atoms");
     if (j == 0) {
         s.block.ahead = cut.to_atoms_before;
         s.kept_ahead = cut.to_kept_before;
@@ -149,7 +149,7 @@ static void finish_segments(const SegmentBlock &s, const Reader &in, const Separ
     vec3 after = next * behind.d, D[stage_bonds + 1 + W];
     VirialSum sum;
     const auto substituted = [&](long k) HOL_FORCED {
-        const Kept &p = x.kept[k];
+        const SegmentBond &p = x.kept[k];
         return mul_add(p.l, t, mul_add(p.fP, ts, p.u));
     };
     const auto chunk = [&](long k0, const vec3 *d, bool ragged) HOL_FORCED {
@@ -162,7 +162,7 @@ static void finish_segments(const SegmentBlock &s, const Reader &in, const Separ
         store_segment_chunk<update, weighted>(own, out, w, ragged, k0, d, value, after, sum);
     };
     // Without a box bonds are found chunk by chunk, in registers: 5 % fewer instructions of forces.
-    const bool plain = in.box.shape == Box::none;
+    const bool plain = in.box.lattice == Box::none;
     const RowsOfLanes rows(*in.r);
     for (long from = (n - 1) / stage_bonds * stage_bonds; from >= 0; from -= stage_bonds) {
         const long end = from + stage_bonds < n ? from + stage_bonds : n, ended = plain && full > from ? full : from;
@@ -218,20 +218,20 @@ void finish_block(bool weighted, const Box &box, const AtomArray &r, const AtomA
 void long_forces_eliminate(const ForcesCall &call, const Lane &lane, int64_t j, bool extended, double *store,
                            double *scratch) {
     eliminate_block((call.v.x ? velocity_squared : 0) | (call.f.x ? force_difference : 0), call.box, Cut(lane.n_bonds),
-                    lane, j, call.r, call.v, call.f, extended, store, Arena(scratch, longest_piece));
+                    lane, j, call.r, call.v, call.f, extended, store, Arena(scratch, longest_cut));
 }
 
 void long_forces_finish(const ForcesCall &call, const Lane &lane, int64_t j, double *store, double *scratch,
                         Tally &tally) {
     const SegmentOutputs out = {{}, false, call.lambda, call.tension, splat(0.5), 1.0, call.virial};
     finish_block(false, call.box, call.r, call.g, call.add, out, Cut(lane.n_bonds), lane, j, store,
-                 Arena(scratch, longest_piece), tally);
+                 Arena(scratch, longest_cut), tally);
 }
 
 void long_velocities_eliminate(const VelocitiesCall &call, const Lane &lane, int64_t j, bool extended, double *store,
                                double *scratch) {
     eliminate_block(rate, call.box, Cut(lane.n_bonds), lane, j, call.r, call.v, AtomArray{}, extended, store,
-                    Arena(scratch, longest_piece), call.strain);
+                    Arena(scratch, longest_cut), call.strain);
 }
 
 void long_velocities_finish(const VelocitiesCall &call, const Lane &lane, int64_t j, double *store, double *scratch,
@@ -240,7 +240,7 @@ void long_velocities_finish(const VelocitiesCall &call, const Lane &lane, int64_
     const double mass = 1 / unit_of(lane);
     const SegmentOutputs out = {{}, false, call.lambda, nullptr, splat(0.5 * mass), mass, call.virial};
     finish_block(true, call.box, call.r, call.v, true, out, Cut(lane.n_bonds), lane, j, store,
-                 Arena(scratch, longest_piece), tally);
+                 Arena(scratch, longest_cut), tally);
 }
 
 }  // namespace holonomic::HOL_ISA

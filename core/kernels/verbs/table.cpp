@@ -28,7 +28,7 @@ const Kernels kernels = {
     W,
     HOL_HAS_FMA != 0,
     scratch_bytes,
-    scratch_doubles(longest_piece) * static_cast<int64_t>(sizeof(double)),
+    scratch_doubles(longest_cut) * static_cast<int64_t>(sizeof(double)),
     forces,
     velocities,
     positions,

@@ -24,7 +24,7 @@ bool bounded(int64_t n, const double *a, double bound) {
     return bits(above) == 0;  // their signs
 }
 
-struct Factors {
+struct TwistedFactors {
     int64_t n, middle;
     const double *gamma;  // [k - 1]: between rows k - 1 and k
     double *inverse;      // of the pivots
@@ -34,7 +34,7 @@ struct Factors {
 
 // Both ends at once: one(row, end) for the rows before the middle upwards, and for those behind it downwards.
 template <class One>
-HOL_INLINE void inwards(const Factors &t, const One &one) {
+HOL_INLINE void inwards(const TwistedFactors &t, const One &one) {
     int64_t low = 0, high = t.n - 1;
     for (; low < t.middle && high > t.middle; ++low, --high) {
         one(low, 0);
@@ -45,7 +45,7 @@ HOL_INLINE void inwards(const Factors &t, const One &one) {
 }
 
 // T x = b, once what both ends bring to the middle row is known. x holds b and what the outer rows bring to it.
-HOL_INLINE void outwards(const Factors &t, double *x) {
+HOL_INLINE void outwards(const TwistedFactors &t, double *x) {
     const int64_t middle = t.middle, n = t.n;
     double low = x[middle] * t.inverse[middle], high = low;
     x[middle] = low;
@@ -62,7 +62,7 @@ HOL_INLINE void outwards(const Factors &t, double *x) {
 }
 
 // Factorizes and solves T x = b. False if a pivot may not be positive, by a bound of its error.
-HOL_INLINE bool factorize_and_solve(const Factors &t, const double *b, double *x) {
+HOL_INLINE bool factorize_and_solve(const TwistedFactors &t, const double *b, double *x) {
     constexpr double unit = 2 * epsilon;
     double pivot[2] = {1, 1}, error[2] = {0, 0}, y[2] = {0, 0};
     bool good = true;
@@ -85,7 +85,7 @@ HOL_INLINE bool factorize_and_solve(const Factors &t, const double *b, double *x
 }
 
 // T x = x.
-HOL_INLINE void solve(const Factors &t, double *x) {
+HOL_INLINE void solve(const TwistedFactors &t, double *x) {
     double y[2] = {0, 0};
     inwards(t, [&](int64_t k, int end) {
         const double factor = t.beside(k) * t.inverse[k];
@@ -104,7 +104,7 @@ HOL_INLINE V residual(V b, V x, V g_before, V x_before, V g_behind, V x_behind) 
     return r.hi + ((s.lo + u.lo) + (r.lo + (p.lo + q.lo)));
 }
 
-void residuals(const Factors &t, const double *b, const double *x, double *r) {
+void residuals(const TwistedFactors &t, const double *b, const double *x, double *r) {
     const double *const g = t.gamma;
     const int64_t n = t.n;
     if (n == 1) {
@@ -152,7 +152,7 @@ double correct(int64_t n, const double *correction, double *x) {
 // below 2^-62, with some digits left for what is not known of that, x is the rounded solution.
 bool tridiagonal_solve(int64_t n, const double *gamma, const double *b, double *x, double *scratch) {
     if (!bounded(n - 1, gamma, 1) || !bounded(n, b, most)) return false;
-    const Factors t{n, n / 2, gamma, scratch};
+    const TwistedFactors t{n, n / 2, gamma, scratch};
     double *const solution = scratch + n, *const correction = scratch + 2 * n;
     if (!factorize_and_solve(t, b, solution)) return false;
     double shrinks = 0;

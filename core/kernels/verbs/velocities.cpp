@@ -105,26 +105,26 @@ static void velocities_block(const Block &block, const Lane *lane, const Velocit
 HOL_NOINLINE vec stretching_of(const double *strain, vec3 d) { return stretching(strain, d); }
 
 // Does molecules from `first` on. Returns the first one that is not done. `given`: the block of a regular unit.
-template <class Place, bool uniform, bool boxed, bool virial>
+template <class View, bool uniform, bool boxed, bool virial>
 static int64_t velocities_of_molecules(const VelocitiesCall &call, const Unit &unit, const Block &given, int64_t first,
                                        Tally &tally) {
-    constexpr int N = Place::bonds;
-    const auto r = Place::array(call.r), v = Place::array(call.v);
-    BlockMasses<Place> masses(given);
+    constexpr int N = View::bonds;
+    const auto r = View::array(call.r), v = View::array(call.v);
+    BlockMasses<View> masses(given);
     const Block &block = masses.block;
-    const int64_t end = Place::end(unit, first);
-    for (int64_t n; (n = Place::next(first, end)) > 0; first += n) {
+    const int64_t end = View::end(unit, first);
+    for (int64_t n; (n = View::next(first, end)) > 0; first += n) {
         vec3 D[N];
         vec t[N], left[N + 1], L[N + 1], pivots[N], elements[vectors_of<N>];
-        const Place place(unit, first, n);
-        masses.take(place);
-        place.fetch_next(r);
-        place.fetch_next(v);
-        load_bonds<boxed, false>(call.box, place, r, elements, D);
-        load_molecules(place, v, elements);
-        const auto source = place.source(r, call.box);
+        const View view(unit, first, n);
+        masses.take(view);
+        view.fetch_next(r);
+        view.fetch_next(v);
+        load_bonds<boxed, false>(call.box, view, r, elements, D);
+        load_molecules(view, v, elements);
+        const auto source = view.source(r, call.box);
         const Projection x({D, t, L, pivots}, reinterpret_cast<vec3 *>(elements), left);
-        Sweep<uniform, true, decltype(place.source(r, call.box))> sweep{block, source, x.s};
+        Sweep<uniform, true, decltype(view.source(r, call.box))> sweep{block, source, x.s};
         HOL_UNROLL
         for (int k = 0; k < N; ++k) {
             vec b = rate_of(D[k], x.v[k], x.v[k + 1]);
@@ -148,20 +148,20 @@ static int64_t velocities_of_molecules(const VelocitiesCall &call, const Unit &u
         HOL_UNROLL
         for (int k = N - 1; k >= 0; --k) x.v[k + 1] = correction.step(k);
         x.v[0] = correction.finish();
-        if (call.lambda) store_multipliers(place, t, 0.5 * block.mass, call.lambda);
-        store_molecules<write_>(place, elements, v);
+        if (call.lambda) store_multipliers(view, t, 0.5 * block.mass, call.lambda);
+        store_molecules<write_>(view, elements, v);
     }
     return first;
 }
 
 static int64_t small_velocities(const VelocitiesCall &call, const Unit &unit, Block &block, int64_t first,
                                 Tally &tally) {
-    const bool boxed = call.box.shape != Box::none;
-    const auto kernel = [&](auto place, auto uniform, auto in_box) {
-        typedef typename decltype(place)::type Place;
-        constexpr bool equal = decltype(uniform)::value && Place::alike, with_box = decltype(in_box)::value;
-        return with_virial_or_not<Place, with_box>(call.virial, [&](auto virial, auto box) {
-            return velocities_of_molecules<Place, equal, box, virial>(call, unit, block, first, tally);
+    const bool boxed = call.box.lattice != Box::none;
+    const auto kernel = [&](auto view, auto uniform, auto in_box) {
+        typedef typename decltype(view)::type View;
+        constexpr bool equal = decltype(uniform)::value && View::alike, with_box = decltype(in_box)::value;
+        return with_virial_or_not<View, with_box>(call.virial, [&](auto virial, auto box) {
+            return velocities_of_molecules<View, equal, box, virial>(call, unit, block, first, tally);
         });
     };
     if (call.r.packed && call.v.packed) return any_molecules(unit, block, first, boxed, true, kernel);
@@ -170,7 +170,7 @@ static int64_t small_velocities(const VelocitiesCall &call, const Unit &unit, Bl
 
 // Arrays that are not packed. False if nothing has been done.
 static bool velocities_in_parts(const VelocitiesCall &call, const Unit &unit, double *scratch, Tally &tally) {
-    if (reads_columns(call) && fit_columns(unit, call.box.shape != Box::none)) return false;
+    if (reads_columns(call) && fit_columns(unit, call.box.lattice != Box::none)) return false;
     return in_packed_parts(call, unit, tally, [=](const VelocitiesCall &c, const Unit &u, Tally &own) {
         for_each_block(c, u, scratch, own, velocities_block, small_velocities);
     });

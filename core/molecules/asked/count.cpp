@@ -13,9 +13,9 @@ constexpr const char *too_many =
     "hol_chains_add_rigid holds such a part by coordinates";
 
 // The molecule as a graph in which a fixed atom is one atom, however many bonds it ends.
-class Graph {
+class BondGraph {
 public:
-    Graph(const Draft &draft, std::int64_t bonds_round)
+    BondGraph(const Draft &draft, std::int64_t bonds_round)
         : draft_(draft), bonds_round_(bonds_round), vertex_(draft.atoms.size()) {
         std::int32_t n = -1;
         for (std::size_t i = 0; i < vertex_.size(); ++i) {
@@ -170,7 +170,7 @@ void check_count(const BondList &list, const Draft &draft) {
     const std::int64_t n_fixed = std::count(draft.fixed.begin(), draft.fixed.end(), 1);
     // Five atoms with ten bonds have six independent cycles; no part with fewer is overfull, unless atoms are fixed.
     if (n_bonds - n_atoms < 5 && n_fixed < 4) return;
-    Graph graph(draft, list.bonds_round);
+    BondGraph graph(draft, list.bonds_round);
     if (!graph.strip()) return;
     std::int64_t bond = graph.overfull();
     if (bond < 0) bond = graph.five_bonded();

@@ -49,7 +49,7 @@ void Chains::held_sites(unsigned char *held) const {
     // What is rigid: bodies, and triangles of bonds.
     std::unordered_set<std::int64_t> rigid;
     for (std::int64_t m = 0; bodies_ && m < bodies_->n_molecules(); ++m)
-        for (const rigid::Part &part : bodies_->shape(m).parts)
+        for (const rigid::Part &part : bodies_->kind(m).parts)
             for (std::int32_t i = 0; i < bodies_->body(part).n_atoms; ++i)
                 if (bodies_->body(part).is_rigid) rigid.insert(bodies_->atoms(m)[part.first_atom + i]);
     Neighbours tied_at;  // of any atom, those of its neighbours that are tied

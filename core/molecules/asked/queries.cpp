@@ -43,7 +43,7 @@ int Chains::topology_of(std::int64_t number) const {
     return number < n_chains() ? static_cast<int>(molecule(number).topology()) : topology_with_bodies;
 }
 
-std::int64_t Chains::n_kinds() const { return kinds_.size() + (bodies_ ? bodies_->n_shapes() : 0); }
+std::int64_t Chains::n_kinds() const { return kinds_.size() + (bodies_ ? bodies_->n_kinds() : 0); }
 
 std::int64_t Chains::n_of_topology(int topology) const {
     if (topology == topology_with_bodies) return bodies_ ? bodies_->n_molecules() : 0;
@@ -87,7 +87,7 @@ void Chains::offsets(std::int64_t *out) const {
 }
 
 std::int64_t Chains::count_atoms(std::int64_t number) const {
-    if (number >= n_chains()) return bodies_->shape(number - n_chains()).n_atoms;
+    if (number >= n_chains()) return bodies_->kind(number - n_chains()).n_atoms;
     const Molecule m = molecule(number);
     if (!m.shape) return m.n_atoms;
     std::int64_t n = 1;
@@ -109,7 +109,7 @@ void Chains::atoms(std::int64_t number, std::int64_t *out) const {
 
 std::int64_t Chains::count_bonds(std::int64_t number) const {
     if (number < n_chains()) return molecule(number).n_bonds;
-    return static_cast<std::int64_t>(bodies_->shape(number - n_chains()).bonds.size());
+    return static_cast<std::int64_t>(bodies_->kind(number - n_chains()).bonds.size());
 }
 
 void Chains::bonds(std::int64_t number, std::int64_t *out) const {
@@ -153,7 +153,7 @@ void Chains::for_bonds(const Each &each) const {
     }
     for (std::int64_t m = 0; bodies_ && m < bodies_->n_molecules(); ++m) {
         const std::int64_t *const atom = bodies_->atoms(m), *number = bodies_->bonds(m);
-        for (const rigid::Bond &bond : bodies_->shape(m).bonds)
+        for (const rigid::Bond &bond : bodies_->kind(m).bonds)
             each(*number++, atom[bond.i], atom[bond.j], bond.length, bond.row < 0 ? Role::body : Role::own);
     }
 }

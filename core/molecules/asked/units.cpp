@@ -69,7 +69,7 @@ Unit Chains::unit(const Plan &plan, const Plan::Chunk &p, Lane *lane) const {
         *lane = lane_of(groups_.all()[at(p.group)], p.first, p.stage);
         return {lane, p.count, true, large};
     }
-    return {&plan.loose_chains[at(p.first)], p.count, p.count == 1, large};  // one is like itself
+    return {&plan.gathered_chains[at(p.first)], p.count, p.count == 1, large};  // one is like itself
 }
 
 namespace {
@@ -89,7 +89,7 @@ inline MoleculeUnit unit_of(const Plan &plan, const Plan::Chunk &p, const Molecu
 
 MoleculeUnit Chains::unit(const Plan &plan, const Plan::Chunk &p, MoleculeLane *lane) const {
     if (p.group >= 0) return unit_of_group(plan, p, lane);
-    return unit_of(plan, p, &plan.loose_molecules[at(p.first)], false);
+    return unit_of(plan, p, &plan.gathered_molecules[at(p.first)], false);
 }
 
 // Not inlined: what comes as a list needs none of it.

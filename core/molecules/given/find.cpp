@@ -37,9 +37,9 @@ const BondList &checked(std::int64_t n_atoms, const BondList &list) {
 namespace {
 
 // Sets of atoms that hold together. The least number stands for its set.
-class Sets {
+class DisjointSets {
 public:
-    explicit Sets(std::int32_t n) : parent_(at(n)) {
+    explicit DisjointSets(std::int32_t n) : parent_(at(n)) {
         for (std::int32_t i = 0; i < n; ++i) parent_[at(i)] = i;
     }
     std::int32_t of(std::int32_t i) {
@@ -149,7 +149,7 @@ private:
     // Which molecule each bond and each movable atom belongs to.
     void divide() {
         const std::size_t n_bonds = end_.size() / 2;
-        Sets sets(number_.size());
+        DisjointSets sets(number_.size());
         for (std::size_t k = 0; k < n_bonds; ++k)
             if (!any_fixed_ || (!fixed_[at(end_[2 * k])] && !fixed_[at(end_[2 * k + 1])]))
                 sets.join(end_[2 * k], end_[2 * k + 1]);

@@ -1,10 +1,10 @@
-// The arms of a large molecule's trees (core/kernels/molecules/elimination_plan.hpp).
+// The arms of a large molecule's trees (core/plan/elimination.hpp).
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include "core/kernels/molecules/elimination_plan.hpp"
+#include "core/plan/elimination.hpp"
 
 namespace holonomic {
 

@@ -14,7 +14,7 @@ using Sides = std::vector<unsigned char>;
 constexpr std::int32_t coarsest = 40;  // vertices
 constexpr int most_passes = 2, most_in_vain = 40, seeds = 3;
 
-std::int64_t whole(const Graph &g) {
+std::int64_t whole(const WeightedGraph &g) {
     std::int64_t sum = 0;
     for (const std::int32_t w : g.weight) sum += w;
     return sum;
@@ -22,13 +22,13 @@ std::int64_t whole(const Graph &g) {
 
 // Calls each(neighbour, weight).
 template <class Each>
-void for_edges(const Graph &g, std::int32_t i, const Each &each) {
+void for_edges(const WeightedGraph &g, std::int32_t i, const Each &each) {
     for (std::int32_t e = g.start[at(i)]; e < g.start[at(i) + 1]; ++e) each(g.edge[at(e)].to, g.edge[at(e)].weight);
 }
 
 // Which vertex of a coarser graph each one becomes. They choose in a scattered order, so that no pattern of their
 // numbers tells in the shapes of what is merged.
-Numbers merged(const Graph &g, std::int32_t &n_coarse) {
+Numbers merged(const WeightedGraph &g, std::int32_t &n_coarse) {
     const std::int32_t n = g.size();
     const std::int64_t most = std::max<std::int64_t>(2, 3 * whole(g) / (2 * coarsest));
     Numbers order(at(n)), mate(at(n), -1), to(at(n));
@@ -56,8 +56,8 @@ Numbers merged(const Graph &g, std::int32_t &n_coarse) {
     return to;
 }
 
-Graph coarser(const Graph &g, const Numbers &to, std::int32_t n) {
-    Graph c;
+WeightedGraph coarser(const WeightedGraph &g, const Numbers &to, std::int32_t n) {
+    WeightedGraph c;
     c.weight.assign(at(n), 0);
     c.start.assign(1, 0);
     Numbers first(at(n), -1), second(at(n), -1), place(at(n), -1);
@@ -118,7 +118,7 @@ private:
 // Moves vertices from side to side.
 class Refinement {
 public:
-    Refinement(const Graph &g, Sides &side)
+    Refinement(const WeightedGraph &g, Sides &side)
         : g_(g), side_(side), degree_(at(g.size())), gain_(at(g.size())), state_(at(g.size())) {
         const std::int64_t all = whole(g);
         std::int32_t most_gain = 0;
@@ -205,7 +205,7 @@ private:
         return least < before;
     }
 
-    const Graph &g_;
+    const WeightedGraph &g_;
     Sides &side_;
     Numbers degree_, gain_, moved_;  // degree_: with weights
     std::vector<unsigned char> state_;
@@ -214,7 +214,7 @@ private:
 };
 
 // Grown from one vertex, level by level, to half of the whole.
-Sides grown(const Graph &g, std::int32_t seed) {
+Sides grown(const WeightedGraph &g, std::int32_t seed) {
     Sides side(at(g.size()), 1);
     Numbers reached{seed};
     std::int64_t left = whole(g) / 2;
@@ -239,7 +239,7 @@ Sides grown(const Graph &g, std::int32_t seed) {
     return side;
 }
 
-Sides divided(const Graph &g) {
+Sides divided(const WeightedGraph &g) {
     Sides best;
     std::pair<std::int64_t, std::int64_t> least;
     for (int s = 0; s < seeds; ++s) {
@@ -256,7 +256,7 @@ Sides divided(const Graph &g) {
 
 }  // namespace
 
-std::vector<unsigned char> bisect(const Graph &g) {
+std::vector<unsigned char> bisect(const WeightedGraph &g) {
     if (g.size() <= coarsest) return divided(g);
     std::int32_t n_coarse = 0;
     const Numbers to = merged(g, n_coarse);

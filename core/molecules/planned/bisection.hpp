@@ -9,7 +9,7 @@
 namespace holonomic {
 
 // An undirected graph: each edge stands in the lists of both its vertices.
-struct Graph {
+struct WeightedGraph {
     struct Edge {
         std::int32_t to, weight;
     };
@@ -19,6 +19,6 @@ struct Graph {
 };
 
 // 0 or 1 for each vertex: halves by weight, but for some tenths of it where that cuts less. The graph alone decides.
-std::vector<unsigned char> bisect(const Graph &graph);
+std::vector<unsigned char> bisect(const WeightedGraph &graph);
 
 }  // namespace holonomic

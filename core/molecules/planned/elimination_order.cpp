@@ -80,6 +80,16 @@ std::vector<std::int32_t> minimum_degree(std::vector<Rows> neighbours, Ties ties
     return order;
 }
 
+void order_bonds(const Lists &bonds, const std::int32_t *atom_i, const std::int32_t *atom_j, const Numbers &core,
+                 const Numbers &number, Ties ties, std::int64_t most_bytes, Numbers &order) {
+    std::vector<Rows> neighbours(core.size());
+    for (std::size_t p = 0; p < core.size(); ++p)
+        for (const std::int32_t i : {atom_i[core[p]], atom_j[core[p]]})
+            for (const std::int32_t *l = bonds.begin(i); l != bonds.end(i); ++l)
+                if (*l != core[p] && number[at(*l)] >= 0) neighbours[p].push_back(number[at(*l)]);
+    for (const std::int32_t p : minimum_degree(std::move(neighbours), ties, most_bytes)) order.push_back(core[at(p)]);
+}
+
 namespace {
 
 void check_count(std::int64_t n) {

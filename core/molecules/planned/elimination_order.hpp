@@ -30,6 +30,11 @@ enum class Ties { latest, first };
 std::vector<std::int32_t> minimum_degree(std::vector<std::vector<std::int32_t>> neighbours, Ties ties = Ties::latest,
                                          std::int64_t most_bytes = no_limit);
 
+// Appends the bonds of `core`, which are those with a number, in the order of minimum degree: bonds meet at the atoms
+// atom_i, atom_j, which have the lists `bonds`.
+void order_bonds(const Lists &bonds, const std::int32_t *atom_i, const std::int32_t *atom_j, const Numbers &core,
+                 const Numbers &number, Ties ties, std::int64_t most_bytes, Numbers &order);
+
 // Of each of n rows the others that it meets somewhere, as often as they meet, where meeting.begin(i) .. end(i) are
 // those that meet at i.
 Lists neighbours_of(const Lists &meeting, std::int32_t n);

@@ -23,7 +23,7 @@ void add_large_tree(EliminationPlan &s, EliminationPlan::Memory::Large &m) {
             return;
         }
         s.runs = m.runs.runs();
-        s.n_pieces = static_cast<std::int32_t>(m.runs.piece_start.size()) - 2;
+        s.n_tiles = static_cast<std::int32_t>(m.runs.tile_start.size()) - 2;
         return;
     }
     s.arm = m.arms.arm.data();

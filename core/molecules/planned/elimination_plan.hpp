@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <memory>
 
-#include "core/kernels/molecules/elimination_plan.hpp"
 #include "core/molecules/planned/elimination_order.hpp"
+#include "core/plan/elimination.hpp"
 
 namespace holonomic {
 

@@ -82,7 +82,7 @@ void EliminationPlanner::hang_from_leaf(std::int32_t centre) {
 
 // The trees below the atoms that were not taken away, from the last slot to the first. Of molecules that go in lanes
 // level by level, so that what waits for each other is far apart and the children of all atoms follow each other. Of
-// large ones each atom is followed by all that hangs from it, so that a piece of the slots is connected.
+// large ones each atom is followed by all that hangs from it, so that a tile of the slots is connected.
 void EliminationPlanner::number_trees() {
     Numbers &order = m_.stack, &left = m_.next;
     const auto add_children = [&](std::int32_t i, Numbers &to) {
@@ -152,13 +152,7 @@ void EliminationPlanner::number_core() {
 
 void EliminationPlanner::order_core(const Numbers &core, const Numbers &core_number, std::int64_t most_bytes) {
     check_atoms(core, most_bytes);
-    std::vector<Numbers> neighbours(core.size());
-    for (std::size_t p = 0; p < core.size(); ++p)
-        for (const std::int32_t i : {m_.atom_i[at(core[p])], m_.atom_j[at(core[p])]})
-            for (const std::int32_t *l = bonds_.begin(i); l != bonds_.end(i); ++l)
-                if (*l != core[p] && core_number[at(*l)] >= 0) neighbours[p].push_back(core_number[at(*l)]);
-    for (const std::int32_t p : minimum_degree(std::move(neighbours), Ties::latest, most_bytes))
-        m_.bond_of.push_back(core[at(p)]);
+    order_bonds(bonds_, m_.atom_i.data(), m_.atom_j.data(), core, core_number, Ties::latest, most_bytes, m_.bond_of);
 }
 
 // At atoms with other than two bonds of the core, or with trees.

@@ -1,4 +1,4 @@
-// Finds the order of elimination of a shape, and lists what goes with it (core/kernels/molecules/elimination_plan.hpp).
+// Finds the order of elimination of a shape, and lists what goes with it (core/plan/elimination.hpp).
 #pragma once
 
 #include <cstdint>

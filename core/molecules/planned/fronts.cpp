@@ -56,7 +56,7 @@ public:
 
 private:
     // Fronts of these cells, whose edges `g` has; returns the last one. Cells of the part: `cells` as g numbers them.
-    std::int32_t divide(const Graph &g, const Numbers &cells) {
+    std::int32_t divide(const WeightedGraph &g, const Numbers &cells) {
         std::int32_t unknowns = 0;
         for (const std::int32_t c : cells) unknowns += cells_.unknowns[at(c)];
         FrontPlan::Front front = {0, 0, 0, size_of(a_.node), size_of(a_.node), 0, 0, {-1, -1}, -1};
@@ -65,7 +65,7 @@ private:
         const std::int32_t self_if_leaf = static_cast<std::int32_t>(a_.front.size());
         if (std::adjacent_find(side.begin(), side.end(), std::not_equal_to<>()) != side.end()) {
             for (unsigned char half = 0; half < 2; ++half) {
-                Graph part;
+                WeightedGraph part;
                 Numbers members;
                 part_of(g, side, half, cells, part, members);
                 front.half[half] = divide(part, members);
@@ -84,8 +84,8 @@ private:
             if (f >= 0) parent_[at(f)] = self;
         return self;
     }
-    void part_of(const Graph &g, const std::vector<unsigned char> &side, unsigned char half, const Numbers &cells,
-                 Graph &part, Numbers &members) {
+    void part_of(const WeightedGraph &g, const std::vector<unsigned char> &side, unsigned char half,
+                 const Numbers &cells, WeightedGraph &part, Numbers &members) {
         for (std::int32_t i = 0; i < g.size(); ++i)
             if (side[at(i)] == half) {
                 in_part_[at(i)] = size_of(members);

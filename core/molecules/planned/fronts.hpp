@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/kernels/molecules/network/plan.hpp"
 #include "core/molecules/given/lists.hpp"
+#include "core/plan/network.hpp"
 
 namespace holonomic {
 

@@ -44,7 +44,7 @@ private:
     void list_edges() {
         const Lists strands =
             invert(s_.n_nodes, s_.n_strands, [&](std::int32_t i, int end) { return s_.strand_node[2 * i + end]; });
-        Graph &g = c_.graph;
+        WeightedGraph &g = c_.graph;
         g.start.assign(1, 0);
         for (const std::int32_t n : c_.node) {
             for (const std::int32_t *i = strands.begin(n); i != strands.end(n); ++i) {

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/kernels/molecules/network/plan.hpp"
 #include "core/molecules/given/lists.hpp"
 #include "core/molecules/planned/bisection.hpp"
+#include "core/plan/network.hpp"
 
 namespace holonomic {
 
@@ -20,7 +20,7 @@ struct Cells {
     struct Places {
         std::int32_t own, other;
     };
-    Graph graph;                     // cells and the strands between them, each of weight 1
+    WeightedGraph graph;             // cells and the strands between them, each of weight 1
     Numbers node;                    // [cells] or -1
     Numbers cell_of;                 // [n_nodes] -1 of hubs
     Numbers hub, hub_of;             // nodes; [n_nodes] which hub a node is, or -1

@@ -8,8 +8,6 @@ namespace holonomic {
 
 namespace {
 
-using Rows = std::vector<Numbers>;
-
 std::int32_t entries_of(const Fill &fill, std::int32_t k) {
     return fill.column_start[at(k) + 1] - fill.column_start[at(k)];
 }
@@ -182,12 +180,7 @@ Numbers bonds_from_the_leaves(const EliminationPlan &s) {
         number[at(k)] = static_cast<std::int32_t>(core.size());
         core.push_back(k);
     }
-    Rows neighbours(core.size());
-    for (std::size_t p = 0; p < core.size(); ++p)
-        for (const std::int32_t i : {s.atom_i[core[p]], s.atom_j[core[p]]})
-            for (const std::int32_t *l = bonds.begin(i); l != bonds.end(i); ++l)
-                if (*l != core[p] && !gone[at(*l)]) neighbours[p].push_back(number[at(*l)]);
-    for (const std::int32_t p : minimum_degree(std::move(neighbours), Ties::first)) order.push_back(core[at(p)]);
+    order_bonds(bonds, s.atom_i, s.atom_j, core, number, Ties::first, no_limit, order);
     return order;
 }
 

@@ -1,9 +1,9 @@
 // The order in which the bonds of one large molecule are eliminated.
 #pragma once
 
-#include "core/kernels/molecules/elimination_plan.hpp"
 #include "core/molecules/given/lists.hpp"
 #include "core/molecules/planned/elimination_order.hpp"
+#include "core/plan/elimination.hpp"
 
 namespace holonomic {
 

@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "core/kernels/molecules/elimination_plan.hpp"
-#include "core/kernels/molecules/sparse_ldl/ldl_plan.hpp"
 #include "core/molecules/given/lists.hpp"
+#include "core/plan/elimination.hpp"
+#include "core/plan/sparse_ldl.hpp"
 
 namespace holonomic {
 
@@ -13,7 +13,7 @@ struct LdlArrays {
     Numbers atom_of, home, place_of, bond_of, from, to, row, row_4, column_4, mass, update, outer;
     std::vector<LdlPlan::Tile> tile;
     std::vector<LdlPlan::Subtree> subtree;
-    std::vector<LdlPlan::Run> run;
+    std::vector<LdlPlan::ColumnRun> run;
     std::vector<LdlPlan::Late> late, late_entry;
     std::vector<LdlPlan::Visit> visit;
     LdlPlan list;

@@ -4,10 +4,10 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/kernels/molecules/elimination_plan.hpp"
-#include "core/kernels/molecules/network/plan.hpp"
 #include "core/molecules/given/lists.hpp"
 #include "core/molecules/planned/fronts.hpp"
+#include "core/plan/elimination.hpp"
+#include "core/plan/network.hpp"
 
 namespace holonomic {
 

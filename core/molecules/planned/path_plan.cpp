@@ -122,15 +122,15 @@ private:
     void cut_paths() {
         for (std::size_t p = 0; p < a_.path.size(); ++p) {
             const std::int32_t first = a_.path[p].own, n = a_.path[p].own_end - first;
-            const std::int32_t parts = (n + PathPlan::bonds_of_piece - 1) / PathPlan::bonds_of_piece;
+            const std::int32_t parts = (n + PathPlan::bonds_of_section - 1) / PathPlan::bonds_of_section;
             for (std::int32_t i = 0; i < parts; ++i) {
                 const std::int32_t from = first + n / parts * i + std::min(i, n % parts);
-                a_.piece.push_back({static_cast<std::int32_t>(p), from, from + n / parts + (i < n % parts ? 1 : 0)});
+                a_.section.push_back({static_cast<std::int32_t>(p), from, from + n / parts + (i < n % parts ? 1 : 0)});
             }
         }
-        std::stable_sort(a_.piece.begin(), a_.piece.end(), [](const PathPlan::Piece &a, const PathPlan::Piece &b) {
-            return a.end - a.from > b.end - b.from;
-        });
+        std::stable_sort(
+            a_.section.begin(), a_.section.end(),
+            [](const PathPlan::Section &a, const PathPlan::Section &b) { return a.end - a.from > b.end - b.from; });
     }
 
     // False if a junction has cycles that only a list could eliminate.
@@ -139,15 +139,15 @@ private:
         for (const auto &kind : of_kind_) {
             const Numbers &form = kind.first;
             const std::int32_t count = static_cast<std::int32_t>(kind.second.size());
-            PathPlan::Kind x = {{},
-                                form[0],
-                                form[1],
-                                form[2],
-                                first,
-                                count,
-                                static_cast<std::int32_t>(a_.atom.size()),
-                                static_cast<std::int32_t>(a_.bond.size()),
-                                static_cast<std::int32_t>(a_.overlap.size())};
+            PathPlan::JunctionKind x = {{},
+                                        form[0],
+                                        form[1],
+                                        form[2],
+                                        first,
+                                        count,
+                                        static_cast<std::int32_t>(a_.atom.size()),
+                                        static_cast<std::int32_t>(a_.bond.size()),
+                                        static_cast<std::int32_t>(a_.overlap.size())};
             for (int i = 0; i < PathPlan::n_reaches; ++i) {
                 a_.elimination.push_back(plan_of_bonds(form, PathPlan::reach(i)));
                 x.elimination[i] = a_.elimination.back().get();
@@ -163,8 +163,8 @@ private:
         }
         a_.plan = {a_.path.data(),
                    static_cast<std::int32_t>(a_.path.size()),
-                   a_.piece.data(),
-                   static_cast<std::int32_t>(a_.piece.size()),
+                   a_.section.data(),
+                   static_cast<std::int32_t>(a_.section.size()),
                    a_.kind.data(),
                    static_cast<std::int32_t>(a_.kind.size()),
                    a_.atom.data(),

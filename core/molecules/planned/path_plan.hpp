@@ -1,19 +1,19 @@
-// The paths and junctions of a large molecule (core/kernels/molecules/paths/plan.hpp).
+// The paths and junctions of a large molecule (core/plan/paths.hpp).
 #pragma once
 
 #include <memory>
 #include <vector>
 
-#include "core/kernels/molecules/elimination_plan.hpp"
-#include "core/kernels/molecules/paths/plan.hpp"
 #include "core/molecules/given/lists.hpp"
+#include "core/plan/elimination.hpp"
+#include "core/plan/paths.hpp"
 
 namespace holonomic {
 
 struct PathArrays {
     std::vector<PathPlan::Path> path;
-    std::vector<PathPlan::Piece> piece;
-    std::vector<PathPlan::Kind> kind;
+    std::vector<PathPlan::Section> section;
+    std::vector<PathPlan::JunctionKind> kind;
     std::vector<PathPlan::Overlap> overlap;
     Numbers atom, bond;
     std::vector<std::unique_ptr<const EliminationPlan>> elimination;

@@ -6,9 +6,9 @@
 #include <unordered_map>
 
 #include "core/index.hpp"
-#include "core/kernels/molecules/elimination_plan.hpp"
 #include "core/molecules/chains.hpp"
 #include "core/molecules/planned/way.hpp"
+#include "core/plan/elimination.hpp"
 #include "core/run/kernel_choice.hpp"
 
 namespace holonomic {
@@ -20,7 +20,7 @@ constexpr std::int64_t bonds_per_chunk = 4096;  // enough to hide the cost of a 
 // of any number of lanes take any number of chains.
 constexpr std::int64_t widest = 8;
 static_assert(widest <= most_lanes, "");
-constexpr std::size_t loose_window = 4096;  // molecules
+constexpr std::size_t gathering_window = 4096;  // molecules
 // Different trees are sorted within so many bonds, so that those that are worked on together are close in memory.
 constexpr std::int64_t batch_window = 16384;
 
@@ -39,7 +39,7 @@ public:
 
     std::unique_ptr<Plan> make() {
         for (std::size_t g = 0; g < groups_.size(); ++g) divide(static_cast<std::int64_t>(g));
-        gather_loose();
+        gather();
         plan_->tree_batches.finish();
         std::sort(plan_->copies.begin(), plan_->copies.end(), [](const Plan::Copy &a, const Plan::Copy &b) {
             return std::tie(a.atom, a.place) < std::tie(b.atom, b.place);
@@ -146,7 +146,7 @@ private:
         plan_->n_bonds += (end - begin) * k.n_bonds;
         plan_->reordered = plan_->reordered || (where & reordered) != 0;
         plan_->copied = plan_->copied || ((where & reordered) && !lists_bonds(k.shape));
-        Run run{g, begin, end, stage, -1, k.n_bonds, k.shape, where};
+        Stretch run{g, begin, end, stage, -1, k.n_bonds, k.shape, where};
         if (k.shape != linear || plan_->part_start.empty()) return add_chunks(run);
         for (run.part = plan_->part_start[at(groups_[at(g)].kind)];
              run.part < plan_->part_start[at(groups_[at(g)].kind + 1)]; ++run.part) {
@@ -156,33 +156,33 @@ private:
     }
 
     // Molecules of a group, or of each its part.
-    struct Run {
+    struct Stretch {
         std::int64_t group, begin, end, stage, part, n_bonds;
         std::int32_t shape;
         int where;
     };
 
-    void add_chunks(const Run &run) {
+    void add_chunks(const Stretch &run) {
         if (run.shape == linear) {
             plan_->longest = std::max(plan_->longest, run.n_bonds);
         } else {
             plan_->shapes.push_back(run.shape);
         }
-        // Molecules that are not alike from one to the next are loose, and so are parts of a chain of several.
+        // Molecules that are not alike from one to the next are gathered, and so are parts of a chain of several.
         const bool alone = works_alone(run.shape, run.n_bonds);
         const bool whole = run.part < 0 || plan_->parts[at(run.part)].n_bonds == run.n_bonds;
         const std::int64_t block = alone ? 1 : widest, size = kind(run.group).n_atoms();
-        const std::int64_t per_piece = alone ? 1 : std::max(widest, bonds_per_chunk / run.n_bonds / widest * widest);
+        const std::int64_t per_chunk = alone ? 1 : std::max(widest, bonds_per_chunk / run.n_bonds / widest * widest);
         const auto stage = [&](std::int64_t i) { return run.stage < 0 ? -1 : run.stage + (i - run.begin) * size; };
         std::int64_t begin = run.begin;
         while (whole && run.end - begin >= block) {
-            const std::int64_t count = std::min(per_piece, (run.end - begin) / block * block);
+            const std::int64_t count = std::min(per_chunk, (run.end - begin) / block * block);
             plan_->chunks.push_back({run.group, begin, count, stage(begin), run.part, run.shape, run.where});
             if (alone && run.shape != linear) plant_alone(plan_->chunks.back());
             begin += count;
         }
         for (; begin < run.end; ++begin)
-            loose_.push_back({run.group, begin, stage(begin), run.part, run.n_bonds, run.shape, run.where, 0, {}});
+            gathered_.push_back({run.group, begin, stage(begin), run.part, run.n_bonds, run.shape, run.where, 0, {}});
     }
 
     void add_to_stage(const Group &group, std::int64_t index) {
@@ -196,7 +196,7 @@ private:
     }
 
     // A molecule, or a part of it, that goes into lanes beside others of its size or shape, wherever these stand.
-    struct Loose {
+    struct Gathered {
         std::int64_t group, index, stage, part, n_bonds;
         std::int32_t shape;
         int where;
@@ -204,50 +204,50 @@ private:
         TreeProfile profile;
     };
 
-    // Pieces of molecules that work in the same place, in lanes of about the same length or on one shape, and of one
+    // Parts of molecules that work in the same place, in lanes of about the same length or on one shape, and of one
     // kind as far as there are such near each other in memory: sorted within windows that a cache holds.
-    void gather_loose() {
-        const auto before = [this](const Loose &a, const Loose &b) {
+    void gather() {
+        const auto before = [this](const Gathered &a, const Gathered &b) {
             return std::tie(a.where, a.window, a.profile, a.shape, a.n_bonds, groups_[at(a.group)].kind, a.part) <
                    std::tie(b.where, b.window, b.profile, b.shape, b.n_bonds, groups_[at(b.group)].kind, b.part);
         };
-        for (std::size_t begin = 0, end; begin < loose_.size(); begin = end) {
-            end = std::min(loose_.size(), begin + loose_window);
+        for (std::size_t begin = 0, end; begin < gathered_.size(); begin = end) {
+            end = std::min(gathered_.size(), begin + gathering_window);
             mark_mixed(begin, end);
-            std::stable_sort(&loose_[begin], &loose_[begin] + (end - begin), before);
+            std::stable_sort(&gathered_[begin], &gathered_[begin] + (end - begin), before);
         }
-        for (std::size_t first = 0, end; first < loose_.size(); first = end) {
-            const Loose &head = loose_[first];
+        for (std::size_t first = 0, end; first < gathered_.size(); first = end) {
+            const Gathered &head = gathered_[first];
             const bool chains = head.shape == linear;
-            const std::size_t place = chains ? plan_->loose_chains.size() : plan_->loose_molecules.size();
+            const std::size_t place = chains ? plan_->gathered_chains.size() : plan_->gathered_molecules.size();
             std::int64_t bonds = 0;
-            for (end = first; end < loose_.size(); bonds += loose_[end++].n_bonds) {
-                const Loose &one = loose_[end];
+            for (end = first; end < gathered_.size(); bonds += gathered_[end++].n_bonds) {
+                const Gathered &one = gathered_[end];
                 if (one.where != head.where || one.window != head.window) break;
                 if (one.shape != head.shape && !one.window) break;
                 if (end > first && works_alone(one.shape, one.n_bonds)) break;
-                if (end > first && (end - first) % at(loose_chunk) == 0 && bonds >= loose_chunk_bonds) break;
+                if (end > first && (end - first) % at(gathered_chunk) == 0 && bonds >= gathered_chunk_bonds) break;
                 const Group &group = groups_[at(one.group)];
                 if (chains)
-                    plan_->loose_chains.push_back(chains_.lane_of(group, one.index, one.stage));
+                    plan_->gathered_chains.push_back(chains_.lane_of(group, one.index, one.stage));
                 else
-                    plan_->loose_molecules.push_back(
+                    plan_->gathered_molecules.push_back(
                         chains_.molecule_lane_of(*plan_, group, one.index, one.stage, one.part));
             }
             plan_->chunks.push_back({-1, static_cast<std::int64_t>(place), static_cast<std::int64_t>(end - first), -1,
                                      -1, head.shape, head.where});
-            if (head.shape != loose_[end - 1].shape) plant(first, end, plan_->chunks.back());
+            if (head.shape != gathered_[end - 1].shape) plant(first, end, plan_->chunks.back());
         }
     }
 
-    // Trees of the loose molecules in a range that are fewer of a shape than a block has lanes.
+    // Trees of the gathered molecules in a range that are fewer of a shape than a block has lanes.
     void mark_mixed(std::size_t begin, std::size_t end) {
         const std::int64_t lanes = kernels().lanes;
         std::unordered_map<std::int32_t, std::int64_t> count;
-        for (std::size_t i = begin; i < end; ++i) ++count[loose_[i].shape];
+        for (std::size_t i = begin; i < end; ++i) ++count[gathered_[i].shape];
         std::int64_t bonds = 0;
         for (std::size_t i = begin; i < end; ++i) {
-            Loose &one = loose_[i];
+            Gathered &one = gathered_[i];
             if (one.part >= 0 || one.shape == linear || count[one.shape] >= lanes ||
                 works_alone(one.shape, one.n_bonds))
                 continue;
@@ -266,7 +266,7 @@ private:
         chunk.first_batch = plan_->tree_batches.size();
         for (std::size_t i = first; i < end; i += lanes) {
             const std::size_t n = std::min(lanes, end - i);
-            for (std::size_t l = 0; l < n; ++l) tree[l] = plan_->elimination_plans[at(loose_[i + l].shape)];
+            for (std::size_t l = 0; l < n; ++l) tree[l] = plan_->elimination_plans[at(gathered_[i + l].shape)];
             plan_->tree_batches.add(static_cast<int>(lanes), tree, static_cast<int>(n));
         }
         chunk.n_batches = plan_->tree_batches.size() - chunk.first_batch;
@@ -286,16 +286,16 @@ private:
     const std::vector<Group> &groups_;
     const std::int32_t n_shapes_;
     std::unordered_map<std::int32_t, std::int64_t> alone_;  // batches of trees of large trees, by shape
-    std::vector<Loose> loose_;
+    std::vector<Gathered> gathered_;
     std::unique_ptr<Plan> plan_ = std::make_unique<Plan>();
 };
 
 std::int64_t Plan::bytes() const {
-    std::size_t bytes = sizeof *this + chunks.capacity() * sizeof(Chunk) + loose_chains.capacity() * sizeof(Lane) +
-                        loose_molecules.capacity() * sizeof(MoleculeLane) +
+    std::size_t bytes = sizeof *this + chunks.capacity() * sizeof(Chunk) + gathered_chains.capacity() * sizeof(Lane) +
+                        gathered_molecules.capacity() * sizeof(MoleculeLane) +
                         elimination_plans.capacity() * sizeof(void *) + shapes.capacity() * sizeof(shapes[0]) +
                         (stage.capacity() + part_start.capacity()) * sizeof(std::int64_t) + is_copy.capacity() +
-                        copies.capacity() * sizeof(Copy) + parts.capacity() * sizeof(Part) + part_shapes.bytes() +
+                        copies.capacity() * sizeof(Copy) + parts.capacity() * sizeof(ChainPart) + part_shapes.bytes() +
                         tree_batches.bytes();
     for (const std::vector<double> &table : w) bytes += table.capacity() * sizeof(double);
     return static_cast<std::int64_t>(bytes);

@@ -10,7 +10,8 @@
 
 namespace holonomic {
 
-// Where the arrays of a molecule stand for the kernels: in the caller's memory, or apart from it (core/run/apart.hpp).
+// Where the arrays of a molecule stand for the kernels: in the caller's memory, or apart from it
+// (core/run/staging.hpp).
 enum Where { in_place = 0, reordered = 1, staged = 2 };  // values per bond; atoms; both: 3
 constexpr int n_wheres = 4;
 // Beside it: molecules whose masses or lengths are in units far from ordinary ones (core/run/rescale.hpp).
@@ -20,7 +21,7 @@ constexpr int far_units = 4;
 struct Plan {
     struct Chunk {
         std::int64_t group;         // `count` molecules of this group from `first` on, or
-        std::int64_t first, count;  // if group == -1: these of the loose chains, or of the loose molecules
+        std::int64_t first, count;  // if group == -1: these of the gathered chains, or of the gathered molecules
         std::int64_t stage;         // of the first, or -1
         std::int64_t part;          // of its chains, or -1: all of them
         std::int32_t shape;         // of all its molecules; of batches of trees, of the first
@@ -36,9 +37,9 @@ struct Plan {
     // plan.
     Unit only{};
     Lane first_of_only;
-    std::vector<Lane> loose_chains;  // molecules that fill no block where they stand, in the order in which they are
-    std::vector<MoleculeLane> loose_molecules;               // worked on; the second ones are no linear chains
-    TreeBatches tree_batches;                                // of loose trees of different shapes
+    std::vector<Lane> gathered_chains;  // molecules that fill no block where they stand, in the order in which they are
+    std::vector<MoleculeLane> gathered_molecules;            // worked on; the second ones are no linear chains
+    TreeBatches tree_batches;                                // of gathered trees of different shapes
     std::int64_t longest = 0;                                // bonds of linear chains
     std::int64_t n_bonds = 0;                                // of active molecules
     std::vector<const EliminationPlan *> elimination_plans;  // of all shapes
@@ -51,12 +52,12 @@ struct Plan {
     bool copied = false;                 // and so that no list of them will do
 
     // For calls that work on linear chains as on other molecules: what lies between two fixed atoms is a part.
-    struct Part {
+    struct ChainPart {
         std::int64_t first;  // atom and bond of the chain
         std::int64_t n_bonds;
         std::int32_t shape;
     };
-    std::vector<Part> parts;
+    std::vector<ChainPart> parts;
     std::vector<std::int64_t> part_start;  // [n_kinds+1], empty if chains are worked on as chains
     std::vector<std::vector<double>> w;    // [n_kinds], of kinds whose inverse masses are all alike
     Shapes part_shapes;
@@ -64,8 +65,8 @@ struct Plan {
     std::int64_t bytes() const;
 };
 
-// Loose molecules are worked on in chunks of so many, or of a multiple that has at least so many bonds: what is done
+// Gathered molecules are worked on in chunks of so many, or of a multiple that has at least so many bonds: what is done
 // once a chunk took a tenth of the time of single bonds in chunks of 64.
-constexpr std::int64_t loose_chunk = 64, loose_chunk_bonds = 512;
+constexpr std::int64_t gathered_chunk = 64, gathered_chunk_bonds = 512;
 
 }  // namespace holonomic

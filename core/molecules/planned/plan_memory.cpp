@@ -73,14 +73,14 @@ template <class... Lists>
 std::size_t bytes(const Lists &...lists) {
     return (bytes(lists) + ...);
 }
-std::size_t bytes(const TreeRuns &r) { return bytes(r.run, r.slot, r.piece_start); }
+std::size_t bytes(const TreeRuns &r) { return bytes(r.run, r.slot, r.tile_start); }
 std::size_t bytes(const LdlArrays &f) {
     return bytes(f.atom_of, f.home, f.place_of, f.bond_of, f.from, f.to, f.row, f.row_4, f.column_4, f.mass, f.update,
                  f.outer, f.tile, f.subtree, f.run, f.late, f.late_entry, f.visit);
 }
 
 std::size_t bytes(const PathArrays &p) {
-    std::size_t sum = bytes(p.path, p.piece, p.kind, p.overlap, p.atom, p.bond, p.elimination);
+    std::size_t sum = bytes(p.path, p.section, p.kind, p.overlap, p.atom, p.bond, p.elimination);
     for (const auto &elimination : p.elimination) sum += bytes_of(*elimination);
     return sum;
 }

@@ -1,17 +1,17 @@
-// Which atoms of a large molecule's trees can be worked on at once (core/kernels/molecules/elimination_plan.hpp).
+// Which atoms of a large molecule's trees can be worked on at once (core/plan/elimination.hpp).
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include "core/kernels/molecules/elimination_plan.hpp"
+#include "core/plan/elimination.hpp"
 
 namespace holonomic {
 
 struct TreeRuns {
-    std::vector<EliminationPlan::Run> run;
-    std::vector<std::int32_t> slot, piece_start;
-    EliminationPlan::Runs runs() const { return {run.data(), slot.data(), piece_start.data()}; }
+    std::vector<EliminationPlan::AtomRun> run;
+    std::vector<std::int32_t> slot, tile_start;
+    EliminationPlan::Runs runs() const { return {run.data(), slot.data(), tile_start.data()}; }
 };
 
 // From the parents and the children of an elimination plan. Takes O(n).

@@ -18,7 +18,7 @@ constexpr int n_classes = 5;
 int class_of(std::int32_t children) { return children > most_decomposed ? 4 : std::min(children, 4) - 1; }
 
 // One tree: which of its atoms are ready, as all their children have been dealt with.
-class Tree {
+class GrowingTree {
 public:
     void open(const EliminationPlan &elimination) {
         s_ = &elimination;
@@ -83,7 +83,7 @@ struct Choice {
 };
 
 // The class in which the fewest places stay empty; a step by itself costs about as much as a third of a bond.
-Choice choose(const Tree *trees, std::size_t n_trees) {
+Choice choose(const GrowingTree *trees, std::size_t n_trees) {
     Choice best;
     for (int c = 0; c < n_classes; ++c) {
         Choice one;
@@ -125,12 +125,12 @@ public:
         }
         steps_.clear();
         slots_.clear();
-        piece_.clear();
+        tile_.clear();
     }
     // Takes the atoms of different trees.
     void add_steps() {
         for (int l = 0; l < n_trees_; ++l) trees_[l].open(*tree_[l]);
-        const auto done = [](const Tree &t) { return t.done(); };
+        const auto done = [](const GrowingTree &t) { return t.done(); };
         while (!std::all_of(trees_, trees_ + n_trees_, done)) {
             Choice choice = choose(trees_, at(n_trees_));
             std::fill(choice.slot + n_trees_, choice.slot + most_lanes, -1);
@@ -145,7 +145,7 @@ public:
     // slot: of each lane, or -1.
     void add_step(const std::int32_t *slot, std::int32_t children) {
         steps_.push_back({f_.n_places, children, f_.n_pairs});
-        piece_.push_back(f_.n_pieces);
+        tile_.push_back(f_.n_tiles);
         for (std::size_t l = 0; l < at(lanes_); ++l) {
             slots_.push_back(slot[l]);
             if (slot[l] < 0) continue;
@@ -169,13 +169,13 @@ public:
     void append_to(TreeBatches &all) {
         f_.n_steps = n_steps();
         all.offset_.push_back({all.numbers_.size(), all.stored_.size(), all.held_.size(), all.elimination_.size(),
-                               all.piece_start_.size()});
+                               all.tile_start_.size()});
         all.batch_.push_back(f_);
         all.elimination_.insert(all.elimination_.end(), tree_, tree_ + n_trees_);
         all.held_.resize(all.held_.size() + at(f_.n_places));
         if (all.is_stored(f_)) return list(all.stored_, &all.held_[all.offset_.back().held]);
         list(all.numbers_, &all.held_[all.offset_.back().held]);
-        if (f_.n_pieces > 0) all.numbers_.insert(all.numbers_.end(), element_[0].begin(), element_[0].end());
+        if (f_.n_tiles > 0) all.numbers_.insert(all.numbers_.end(), element_[0].begin(), element_[0].end());
     }
     TreeBatch &batch() { return f_; }
 
@@ -195,7 +195,7 @@ private:
             const std::int32_t slot = slots_[i], lane = static_cast<std::int32_t>(i % lanes);
             const EliminationPlan &s = tree(at(lane));
             const TreeBatch::Step &step = steps_[i / lanes];
-            std::int32_t element = (f_.n_places + 1 + piece_[i / lanes]) * lanes_ + lane;
+            std::int32_t element = (f_.n_places + 1 + tile_[i / lanes]) * lanes_ + lane;
             if (slot >= 0) {
                 atom[i] = static_cast<Number>(s.atom_of[slot]);
                 element = slot == s.n_tree ? f_.n_places * lanes_ + lane : element_of(at(lane), slot);
@@ -220,11 +220,11 @@ private:
     int lanes_ = 0, n_trees_ = 0;
     const EliminationPlan *const *tree_ = nullptr;
     TreeBatch f_{};
-    Tree trees_[most_lanes];
+    GrowingTree trees_[most_lanes];
     std::vector<std::int32_t> element_[most_lanes];  // by slot
     std::vector<TreeBatch::Step> steps_;
     std::vector<std::int32_t> slots_;  // [steps][lanes], or -1
-    std::vector<std::int32_t> piece_;  // [steps]
+    std::vector<std::int32_t> tile_;   // [steps]
 };
 
 TreeBatches::TreeBatches() = default;
@@ -267,20 +267,20 @@ void TreeBatches::add_large(int lanes, const EliminationPlan *tree) {
         }
         ready.clear();
     };
-    const std::size_t first_piece = piece_start_.size();
-    for (std::int32_t p = 0; p <= s.n_pieces; ++p) {
-        maker.batch().n_pieces = p;
-        piece_start_.push_back(maker.n_steps());
-        for (std::int32_t r = s.runs.piece_start[p]; r < s.runs.piece_start[p + 1]; ++r) {
-            const EliminationPlan::Run &run = s.runs.run[r];
+    const std::size_t first_tile = tile_start_.size();
+    for (std::int32_t p = 0; p <= s.n_tiles; ++p) {
+        maker.batch().n_tiles = p;
+        tile_start_.push_back(maker.n_steps());
+        for (std::int32_t r = s.runs.tile_start[p]; r < s.runs.tile_start[p + 1]; ++r) {
+            const EliminationPlan::AtomRun &run = s.runs.run[r];
             ready.insert(ready.end(), s.runs.slot + run.first, s.runs.slot + run.first + run.count);
-            if (r + 1 == s.runs.piece_start[p + 1] || s.runs.run[r + 1].level != run.level) add_level();
+            if (r + 1 == s.runs.tile_start[p + 1] || s.runs.run[r + 1].level != run.level) add_level();
         }
     }
     maker.add_roots();
-    piece_start_.push_back(maker.n_steps());
+    tile_start_.push_back(maker.n_steps());
     maker.append_to(*this);
-    offset_.back().piece = first_piece;
+    offset_.back().tile = first_tile;
 }
 
 void TreeBatches::finish() {
@@ -297,7 +297,7 @@ void TreeBatches::finish() {
             f.stored = &stored_[offset.stored];
         } else {
             f.point_into(&numbers_[offset.numbers], lanes_);
-            f.piece_start = f.n_pieces > 0 ? &piece_start_[offset.piece] : nullptr;
+            f.tile_start = f.n_tiles > 0 ? &tile_start_[offset.tile] : nullptr;
         }
     }
     offset_ = {};
@@ -305,7 +305,7 @@ void TreeBatches::finish() {
 
 std::size_t TreeBatches::bytes() const {
     return batch_.capacity() * sizeof(TreeBatch) +
-           (numbers_.capacity() + piece_start_.capacity()) * sizeof(std::int32_t) +
+           (numbers_.capacity() + tile_start_.capacity()) * sizeof(std::int32_t) +
            (stored_.capacity() + held_.capacity()) * sizeof(std::uint16_t) + elimination_.capacity() * sizeof(void *);
 }
 

@@ -7,7 +7,7 @@
 #include <tuple>
 #include <vector>
 
-#include "core/kernels/molecules/tree_batch/batch.hpp"
+#include "core/plan/tree_batch.hpp"
 
 namespace holonomic {
 
@@ -31,18 +31,18 @@ private:
     Maker &open(int lanes, const EliminationPlan *const *tree, int n_trees);
     std::unique_ptr<Maker> maker_;  // until it is finished
     struct Offsets {
-        std::size_t numbers, stored, held, elimination, piece;
+        std::size_t numbers, stored, held, elimination, tile;
     };
-    // Whether all its numbers fit into 16 bits. Of one large tree they are read piece by piece.
+    // Whether all its numbers fit into 16 bits. Of one large tree they are read tile by tile.
     bool is_stored(const TreeBatch &f) const {
-        return f.n_pieces == 0 && f.n_rows() <= 0x10000 / lanes_ && f.n_pairs < 0x10000;
+        return f.n_tiles == 0 && f.n_rows() <= 0x10000 / lanes_ && f.n_pairs < 0x10000;
     }
     int lanes_ = 0;
     std::vector<TreeBatch> batch_;
     std::vector<Offsets> offset_;
     std::vector<std::int32_t> numbers_;  // of one batch of trees after the other
     std::vector<std::uint16_t> stored_, held_;
-    std::vector<std::int32_t> piece_start_;
+    std::vector<std::int32_t> tile_start_;
     std::vector<const EliminationPlan *> elimination_;
 };
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "core/kernels/molecules/sparse_ldl/ldl_plan.hpp"
 #include "core/molecules/given/lists.hpp"
+#include "core/plan/sparse_ldl.hpp"
 
 namespace holonomic {
 
@@ -39,13 +39,13 @@ std::int32_t centre_of_star(const EliminationPlan &s) {
 }
 
 // Positions of a large tree that is a batch of trees by itself, too.
-bool moves_as_batch(const EliminationPlan &s) { return s.n_pieces > 0 && s.n_bonds <= largest_positions_in_batch; }
+bool moves_as_batch(const EliminationPlan &s) { return s.n_tiles > 0 && s.n_bonds <= largest_positions_in_batch; }
 
 Way forces_of(const EliminationPlan &s) {
     if (s.network) return Way::network;
     if (s.type == EliminationPlan::triangle) return Way::triangle;
     if (s.n_arms > 0) return Way::armed_tree;
-    if (s.n_pieces > 0) return Way::large_tree;
+    if (s.n_tiles > 0) return Way::large_tree;
     if (s.ldl) return Way::sparse_ldl;
     if (s.type == EliminationPlan::ring && s.n_tree == 0) return Way::ring;
     return s.star_centre >= 0 ? Way::star : Way::tree;
@@ -63,7 +63,7 @@ Way positions_of(const EliminationPlan &s, bool along_paths) {
     if (s.type == EliminationPlan::triangle) return Way::triangle;
     if (along_paths) return Way::paths;
     if (s.ldl) return Way::sparse_ldl;
-    if (s.n_pieces > 0) return Way::large_tree;
+    if (s.n_tiles > 0) return Way::large_tree;
     if (s.type == EliminationPlan::ring && s.n_tree == 0) return Way::ring;
     return s.star_centre >= 0 ? Way::star : Way::tree;
 }

@@ -1,10 +1,10 @@
-// Which way a molecule that is no chain takes (core/kernels/molecules/way.hpp): each question, in the order in which
+// Which way a molecule that is no chain takes (core/plan/way.hpp): each question, in the order in which
 // a shape is planned. The shape alone answers them.
 #pragma once
 
 #include <cstdint>
 
-#include "core/kernels/molecules/elimination_plan.hpp"
+#include "core/plan/elimination.hpp"
 
 namespace holonomic {
 
@@ -36,7 +36,7 @@ void choose_ways(EliminationPlan &s);
 
 // Whether different trees may share lanes with this one.
 bool mixes(const EliminationPlan &s);
-// Whether threads can share one molecule beyond the pieces of a tree; `paths`: positions.
+// Whether threads can share one molecule beyond the tiles of a tree; `paths`: positions.
 bool has_shares(const EliminationPlan &s, bool paths);
 
 }  // namespace holonomic

@@ -1,9 +1,10 @@
-// Where the arms of a large molecule (elimination_plan.hpp) are kept while it is solved: each as a chain inside of it.
+// Where the arms of a large molecule (core/plan/elimination.hpp) are kept while it is solved: each as a chain inside of
+// it.
 #pragma once
 
 #include "core/kernels/eliminate/segment.hpp"
-#include "core/kernels/molecules/elimination_plan.hpp"
 #include "core/kernels/molecules/scratch.hpp"
+#include "core/plan/elimination.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 
@@ -24,7 +25,7 @@ constexpr int64_t blocks_of_arm = (longest_arm - 2) / segment_bonds + 1;
 
 // Doubles of the store for so many arms with so many bonds in their segments.
 HOL_INLINE int64_t arm_store_values(int64_t arms, int64_t bonds) {
-    constexpr int64_t summary = sizeof(Summary) / sizeof(double), kept = sizeof(Kept) / sizeof(double);
+    constexpr int64_t summary = sizeof(Summary) / sizeof(double), kept = sizeof(SegmentBond) / sizeof(double);
     return arms * ((blocks_of_arm + 1) * summary + (Cut::longest_step + 1) * kept) + bonds / W * kept;
 }
 HOL_INLINE int64_t inner_bonds(const EliminationPlan &s) {
@@ -50,7 +51,7 @@ constexpr int64_t doubles_of_line = W > 8 ? W : 8;
 // Doubles of all, wherever the memory for them begins.
 HOL_INLINE int64_t arm_values(const EliminationPlan &s) {
     if (s.n_arms == 0) return 0;
-    return doubles_of_line + arm_store_values(s.n_arms, inner_bonds(s)) + scratch_doubles(longest_piece) +
+    return doubles_of_line + arm_store_values(s.n_arms, inner_bonds(s)) + scratch_doubles(longest_cut) +
            s.n_arms / static_cast<int64_t>(sizeof(double)) + 1;
 }
 HOL_INLINE Arms take_arms(const EliminationPlan &s, const double *scratch, Memory<double> &memory) {
@@ -58,7 +59,7 @@ HOL_INLINE Arms take_arms(const EliminationPlan &s, const double *scratch, Memor
     while ((memory.next - scratch) % doubles_of_line != 0) ++memory.next;
     Arms arms = {};
     arms.store = memory.values(arm_store_values(s.n_arms, inner_bonds(s)));
-    arms.work = memory.values(scratch_doubles(longest_piece));
+    arms.work = memory.values(scratch_doubles(longest_cut));
     arms.alone = reinterpret_cast<unsigned char *>(memory.values(s.n_arms / static_cast<int64_t>(sizeof(double)) + 1));
     arms.scratch = scratch;
     return arms;

@@ -1,5 +1,5 @@
-// Arms of one large molecule (elimination_plan.hpp), each as a chain inside of it: the inner bonds of its W segments
-// are eliminated at once, without knowing anything else (eliminate/segment.hpp). What a segment leaves to the
+// Arms of one large molecule (core/plan/elimination.hpp), each as a chain inside of it: the inner bonds of its W
+// segments are eliminated at once, without knowing anything else (eliminate/segment.hpp). What a segment leaves to the
 // separators at its two ends is the matrix [c, -f; -f, E] with a = E c - f^2, and T and y on the right: so the joining
 // of verbs/segments.cpp, which subtracts nothing, can go from either end to the other, whichever is the upper one.
 #pragma once
@@ -31,7 +31,7 @@ HOL_INLINE void for_arms(const ArmedTree &z, bool backwards, Tally &tally, const
     const Arms &arms = z.arms;
     const auto share = [&](int64_t j, double *scratch, Tally &part) {
         const int32_t i = static_cast<int32_t>(backwards ? s.n_shares - 1 - j : j);
-        const Arena arena(scratch == arms.scratch ? arms.work : scratch, longest_piece);
+        const Arena arena(scratch == arms.scratch ? arms.work : scratch, longest_cut);
         for (int32_t a = s.share_start[i]; a < s.share_start[i + 1]; ++a)
             body(backwards ? s.share_start[i] + s.share_start[i + 1] - 1 - a : a, arena, part);
     };
@@ -146,7 +146,7 @@ HOL_NOINLINE void down_arm(ArmedTree &z, int32_t a, bool look) {
 
 // Of atoms between slots, and of bonds between places.
 HOL_NOINLINE void write_range(const Molecules<double> &x, bool weighted, const EliminationPlan::Stretch &range,
-                              const Outputs &out, MoleculesVirial<double> &virial) {
+                              const LinearOutputs &out, MoleculesVirial<double> &virial) {
     const int32_t first = range.first_place, end = range.end_place;
     if (out.lambda) write_bonds<false>(x, 0.5, out.lambda, 1, first, end);
     if (out.tension) write_bonds<true>(x, 1, out.tension, 1, first, end);
@@ -161,7 +161,7 @@ HOL_NOINLINE void write_range(const Molecules<double> &x, bool weighted, const E
 
 // The outputs of an arm that was worked on atom by atom.
 HOL_NOINLINE void write_alone(const Molecules<double> &x, bool weighted, const EliminationPlan::Arm &arm,
-                              const Outputs &out, Tally &tally) {
+                              const LinearOutputs &out, Tally &tally) {
     const int32_t first = arm.ascending ? arm.bottom : arm.bottom + 1;
     MoleculesVirial<double> virial;
     write_range(x, weighted, {arm.bottom + 1, arm.top() + 1, first, first + arm.n_bonds - 1, -1}, out, virial);
@@ -169,7 +169,7 @@ HOL_NOINLINE void write_alone(const Molecules<double> &x, bool weighted, const E
 }
 
 // Writes the outputs of the arms. weighted: v += w G, with v in place of G.
-HOL_NOINLINE void write_arms(const ArmedTree &z, bool weighted, const Outputs &out, Tally &tally) {
+HOL_NOINLINE void write_arms(const ArmedTree &z, bool weighted, const LinearOutputs &out, Tally &tally) {
     const Molecules<double> &x = z.x;
     const SegmentOutputs outputs = {{}, false, out.lambda, out.tension, splat(0.5), 1.0, out.virial};
     for_arms(z, true, tally, [&](int32_t a, const Arena &arena, Tally &part) {

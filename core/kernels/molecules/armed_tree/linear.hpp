@@ -1,6 +1,6 @@
-// The linear equations of one large tree that is mostly arms (elimination_plan.hpp): these are worked on as chains, by
-// any thread, what is between them atom by atom, with the digits of tree/joint.hpp. sweeps.hpp has the functions,
-// compiled once.
+// The linear equations of one large tree that is mostly arms (core/plan/elimination.hpp): these are worked on as
+// chains, by any thread, what is between them atom by atom, with the digits of tree/joint.hpp. sweeps.hpp has the
+// functions, compiled once.
 #pragma once
 
 #include "core/kernels/molecules/armed_tree/arm_store.hpp"
@@ -42,10 +42,10 @@ struct ArmedTree {
     // The way of linear_level.hpp.
     unsigned in_use() const { return 1; }
     unsigned solve() { return read_and_solve(true) && !(solved_twice(x.in) && any_overcorrected()) ? 1 : 0; }
-    void write(const Outputs &out, unsigned, Tally &tally) const { write_all(out, false, tally); }
+    void write(const LinearOutputs &out, unsigned, Tally &tally) const { write_all(out, false, tally); }
     // From the beginning, as a long chain is. The matrix is the same both times. The second time the rates are those
     // that the rounded velocities leave.
-    void project(const Outputs &out, bool twice, unsigned, Tally &tally) {
+    void project(const LinearOutputs &out, bool twice, unsigned, Tally &tally) {
         write_all(out, true, tally);
         if (twice && read_and_solve(false)) write_all({out.g, nullptr, nullptr, true, false}, true, tally);
     }
@@ -57,7 +57,7 @@ private:
     // Whether an atom is overcorrected by the solution (tree/flagged_atom.hpp).
     bool any_overcorrected() const;
     // weighted: v += w G, with v in place of G.
-    void write_all(const Outputs &, bool weighted, Tally &) const;
+    void write_all(const LinearOutputs &, bool weighted, Tally &) const;
 };
 
 }  // namespace holonomic::HOL_ISA::graph

@@ -77,7 +77,7 @@ bool ArmedTree::any_overcorrected() const {
     return false;
 }
 
-void ArmedTree::write_all(const Outputs &out, bool weighted, Tally &tally) const {
+void ArmedTree::write_all(const LinearOutputs &out, bool weighted, Tally &tally) const {
     MoleculesVirial<double> virial;
     for (int32_t i = 0; i <= x.s.n_arms; ++i) write_range(x, weighted, x.s.stretch[i], out, virial);
     write_range(x, weighted, {x.s.n_tree, x.s.n_atoms, 0, 0, -1}, out, virial);

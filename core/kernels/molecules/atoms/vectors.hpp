@@ -5,7 +5,7 @@
 #pragma once
 
 #include "core/kernels/molecules/atoms/consecutive.hpp"
-#include "core/kernels/molecules/elimination_plan.hpp"
+#include "core/plan/elimination.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 

@@ -278,7 +278,7 @@ private:
         for (int32_t i = front.first_spoke; i < front.end_spoke; ++i) {
             const FrontPlan::Spoke &spoke = s.fronts.spoke[i];
             const int32_t u = spoke.unknown;
-            const Factors<double> factors = factors_of(mass.get<double>(s.fronts.hub[spoke.hub]));
+            const TensorFactors<double> factors = factors_of(mass.get<double>(s.fronts.hub[spoke.hub]));
             const Vector3<double> of_row = static_cast<double>(spoke.sign) * (D.get<double>(u) * factors.lower),
                                   of_column = static_cast<double>(spoke.sign) * (factors.upper * b.get<double>(u));
             const double rows[3] = {of_row.x, of_row.y, of_row.z}, columns[3] = {of_column.x, of_column.y, of_column.z};

@@ -1,18 +1,18 @@
-// The unknowns of a network eliminated directly, front by front (front_plan.hpp): L D U of their matrix (I. Duff, J.
-// Reid, ACM Trans. Math. Softw. 9, 302 (1983)). It is a preconditioner: what rounding does to it, residuals show.
+// The unknowns of a network eliminated directly, front by front (core/plan/fronts.hpp): L D U of their matrix (I. Duff,
+// J. Reid, ACM Trans. Math. Softw. 9, 302 (1983)). It is a preconditioner: what rounding does to it, residuals show.
 #pragma once
 
 #include "core/kernels/molecules/network/dense.hpp"
-#include "core/kernels/molecules/network/plan.hpp"
 #include "core/kernels/molecules/scratch.hpp"
-#include "core/kernels/molecules/sparse_ldl/ldl_plan.hpp"
+#include "core/plan/network.hpp"
+#include "core/plan/sparse_ldl.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 
 struct Fronts {
     // Where a front's numbers begin; what it leaves, until it is taken up; and where that is made. What a subtree
     // leaves inside of it stands in the memory of the thread, all other in `waiting`.
-    struct Place {
+    struct Offsets {
         int64_t entry, pivot, left, made;
     };
     const FrontPlan &s;
@@ -21,7 +21,7 @@ struct Fronts {
     double *lower, *upper, *per_pivot;  // front by front
     double *waiting;                    // what fronts leave
     double *given;                      // by row: what those before give to it of a right-hand side
-    Place *place;
+    Offsets *place;
     int64_t before_stack;  // of a thread's memory
 
     static int64_t values(const FrontPlan &s, bool symmetric) {
@@ -37,8 +37,8 @@ struct Fronts {
     Fronts(const FrontPlan &plan, bool symmetric, const LongTeam *threads, double *of_thread, Memory<double> &memory)
         : s(plan), team(threads), buffer(of_thread) {
         if (s.n_fronts == 0) return;
-        place = reinterpret_cast<Place *>(memory.values(in_fours(4 * static_cast<int64_t>(s.n_fronts))));
-        const Sizes n = lay_out(s, [&](int32_t f, const Place &p) { place[f] = p; });
+        place = reinterpret_cast<Offsets *>(memory.values(in_fours(4 * static_cast<int64_t>(s.n_fronts))));
+        const Sizes n = lay_out(s, [&](int32_t f, const Offsets &p) { place[f] = p; });
         lower = memory.values(in_fours(n.entries));
         upper = symmetric ? lower : memory.values(in_fours(n.entries));
         per_pivot = memory.values(in_fours(n.pivots));
@@ -102,7 +102,7 @@ private:
                 if (is_separator && front.subtree >= 0) continue;
                 const int64_t own = Dense::filled(front.n_own), height = own + rest_of(front),
                               left = square_left(front);
-                Place p = {all.entries, all.pivots, top, top};
+                Offsets p = {all.entries, all.pivots, top, top};
                 for (const int32_t half : front.half)
                     if (half >= 0 && s.front[half].subtree == front.subtree) p.left -= square_left(s.front[half]);
                 top = p.left + left;
@@ -122,7 +122,7 @@ private:
     // What a front is worked on with: the panels of Dense, and its right-hand side.
     static int64_t for_one(const Sizes &n) { return (2 * Dense::panel + 2) * in_fours(n.tallest); }
     __attribute__((noinline)) static Sizes sizes(const FrontPlan &s) {
-        return lay_out(s, [](int32_t, const Place &) {});
+        return lay_out(s, [](int32_t, const Offsets &) {});
     }
     static bool is_last_of_subtree(const FrontPlan &s, int32_t f) {
         return s.front[f].subtree >= 0 && s.subtree[s.front[f].subtree].end == f + 1;
@@ -144,7 +144,7 @@ private:
     Dense dense(int32_t f, double *of_thread) const {
         const FrontPlan::Front &front = s.front[f];
         const int32_t own = Dense::filled(front.n_own);
-        const Place &p = place[f];
+        const Offsets &p = place[f];
         double *const left = (front.subtree < 0 ? waiting : of_thread + before_stack) + p.made;
         return {own,  own + rest_of(front), lower + p.entry, upper + p.entry,
                 left, per_pivot + p.pivot,  of_thread,       nullptr};

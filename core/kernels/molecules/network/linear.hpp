@@ -40,23 +40,23 @@ struct NetLinear : NetProof {
             store_any(solution + k, load_any<V>(t + k));
             store_any(enough + k, Width<V>::all(part_of_rounding) * hidden_by_rounding(d_k, tensions));
         };
-        const Flag good = correct_until_right<double>(
-            Flag{true},
+        const ScalarMask good = correct_until_right<double>(
+            ScalarMask{true},
             [&]() {
                 NetResiduals{*this, factor, begun ? solution : t}.find(tension, keep);
                 begun = true;
-                if (!solve_for(next_part, enough, t)) return Flag{false};
+                if (!solve_for(next_part, enough, t)) return ScalarMask{false};
                 net.for_parts([&](const NetPart &part) { factor.take_down(part, t); });
-                return Flag{true};
+                return ScalarMask{true};
             },
-            [&](Flag) {
+            [&](ScalarMask) {
                 const auto bond = [&](int32_t k) {
                     const Vector3<double> one = d.get<double>(k);
                     return Correction<double>{t[k], alone[k], dot(one, one), solution[k]};
                 };
                 return add_corrections(0, s.n_bonds, largest_tension2<double>(0, s.n_bonds, bond), bond);
             },
-            [&]() { return Flag{false}; });
+            [&]() { return ScalarMask{false}; });
         if (!good.set) return false;
         double sum = 0;
         for (int32_t k = 0; k < s.n_bonds; ++k) {
@@ -70,14 +70,14 @@ struct NetLinear : NetProof {
     // The way of linear_level.hpp.
     unsigned in_use() const { return 1; }
     unsigned solve() const { return find_and_prove() ? 1 : 0; }
-    void write(const Outputs &out, unsigned which, Tally &tally) const {
+    void write(const LinearOutputs &out, unsigned which, Tally &tally) const {
         net.for_rest_and_parts([&](const NetPart &part) { write_bonds_and_pulls(*this, out, which, part); });
         if (out.virial)
             add_virial<double>(
                 0, s.n_bonds, [&](int32_t k) { return d.get<double>(k); }, [&](int32_t k) { return t[k]; }, 1, which,
                 tally);
     }
-    void project(const Outputs &out, bool twice, unsigned which, Tally &tally) const {
+    void project(const LinearOutputs &out, bool twice, unsigned which, Tally &tally) const {
         write_all_but_atoms(*this, out, which, tally);
         write_velocities(*out.g, twice);
     }

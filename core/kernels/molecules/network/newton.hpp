@@ -93,7 +93,7 @@ struct NetNewton {
     }
 
     double open() const { return opening; }
-    void forget(Flag which) {
+    void forget(ScalarMask which) {
         if (!which.set) return;
         for (int32_t k = 0; k < s.n_bonds; ++k) tau[k] = 0;
     }
@@ -189,7 +189,7 @@ struct NetNewton {
 
     // Factors have been made when atoms were read.
     void first_factors() { factor.close(); }
-    __attribute__((noinline)) void factorize(Flag) {
+    __attribute__((noinline)) void factorize(ScalarMask) {
         if (moved) find_moves_of_rest();
         const NetPart rest = net.rest();
         const Net3 of_trees = moved ? rest.of_places() : D;
@@ -210,7 +210,7 @@ struct NetNewton {
         });
         factor.factorize(part, bonds, t);
     }
-    __attribute__((noinline)) void solve(Flag) {
+    __attribute__((noinline)) void solve(ScalarMask) {
         const double left = max(min(left_of_error * worst_of_all(), most_left), least_left);
         failed = failed || factor.unknowns.solve(left, nullptr) < 0;
         found = true;

@@ -4,7 +4,7 @@
 
 #include "core/kernels/arithmetic/width.hpp"
 #include "core/kernels/molecules/scratch.hpp"
-#include "core/kernels/molecules/sparse_ldl/ldl_plan.hpp"
+#include "core/plan/sparse_ldl.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 

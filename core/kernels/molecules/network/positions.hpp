@@ -137,9 +137,9 @@ struct NetPositions : PositionWay<double> {
         return pull;
     }
     // What the last solve has left to be done comes first.
-    Flag rejected(Flag) {
+    ScalarMask rejected(ScalarMask) {
         newton.correct();
-        return Flag{newton.failed};
+        return ScalarMask{newton.failed};
     }
     void note_worst(unsigned which, double error) const {
         note_worst_bond(

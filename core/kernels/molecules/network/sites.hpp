@@ -3,7 +3,7 @@
 
 #include "core/kernels/molecules/atoms/layout.hpp"
 #include "core/kernels/molecules/network/parts.hpp"
-#include "core/kernels/molecules/network/plan.hpp"
+#include "core/plan/network.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 

@@ -4,14 +4,10 @@
 
 #include "core/kernels/molecules/network/tensor.hpp"
 #include "core/kernels/molecules/scratch.hpp"
-#include "core/kernels/molecules/sparse_ldl/ldl_plan.hpp"
 #include "core/kernels/molecules/twice.hpp"
+#include "core/plan/sparse_ldl.hpp"
 
 namespace holonomic::HOL_ISA::graph {
-
-// A child is stiff that offers less than this part of the atom's inverse mass. What offers still less than the other
-// one is taken to offer so much.
-constexpr double stiff_offer = 1e-5, least_stiff_offer = 1e-14;
 
 // y - D.a
 HOL_INLINE double left_of(double y, const Vector3<double> &D, const Pair3<double> &a) {

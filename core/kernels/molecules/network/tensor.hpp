@@ -25,11 +25,11 @@ HOL_INLINE Vector3<V> operator*(const Vector3<V> &a, const Tensor<V> &b) {
 
 // An inverse mass is lower * upper. These are each other's transposes if it is symmetric.
 template <class V>
-struct Factors {
+struct TensorFactors {
     Tensor<V> lower, upper;
 };
-HOL_STATIC Factors<double> factors_of(const Tensor<double> &mass) {
-    Factors<double> f = {};
+HOL_STATIC TensorFactors<double> factors_of(const Tensor<double> &mass) {
+    TensorFactors<double> f = {};
     double a[3][3], l[3][3] = {}, u[3][3] = {};
     for (int i = 0; i < 3; ++i) a[i][0] = mass.row[i].x, a[i][1] = mass.row[i].y, a[i][2] = mass.row[i].z;
     for (int k = 0; k < 3; ++k) {

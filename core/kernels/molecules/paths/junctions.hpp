@@ -9,7 +9,7 @@ namespace holonomic::HOL_ISA::graph {
 
 // W junctions of a kind; the last ones of it may be fewer.
 struct Junctions {
-    const PathPlan::Kind &kind;
+    const PathPlan::JunctionKind &kind;
     int32_t first;  // among those of the kind
     int used;
 
@@ -24,7 +24,7 @@ HOL_INLINE int64_t n_junction_blocks(const PathPlan &plan) {
     return n;
 }
 HOL_INLINE Junctions junctions_of_block(const PathPlan &plan, int64_t j) {
-    const PathPlan::Kind *kind = plan.kind;
+    const PathPlan::JunctionKind *kind = plan.kind;
     for (; j >= (kind->count + W - 1) / W; ++kind) j -= (kind->count + W - 1) / W;
     const int32_t first = static_cast<int32_t>(j) * W, left = kind->count - first;
     return {*kind, first, left < W ? left : W};
@@ -93,7 +93,7 @@ static inline int64_t junction_values(const PathPlan &plan) {
     int64_t most = 0;
     for (int32_t i = 0; i < plan.n_kinds; ++i) {
         const EliminationPlan &s = *plan.kind[i].elimination[PathPlan::n_reaches - 1];
-        const int64_t n = W * (lane_values(s) + Newton<vec>::values(s)) + most_lanes;
+        const int64_t n = W * (lane_values(s) + TreeNewton<vec>::values(s)) + most_lanes;
         most = n > most ? n : most;
     }
     return most;
@@ -112,7 +112,7 @@ HOL_INLINE void for_bonds_of_junctions(const PathPlan &plan, const Junctions &ju
     }
 }
 
-static inline void keep_junctions(const PathsWork &x, const Junctions &junctions, const Newton<vec> &newton,
+static inline void keep_junctions(const PathsWork &x, const Junctions &junctions, const TreeNewton<vec> &newton,
                                   int32_t reach) {
     const EliminationPlan &s = newton.x.s;
     for_bonds_of_junctions(x.plan, junctions, s, reach, PathPlan::bonds_of_end,
@@ -126,7 +126,7 @@ static inline void keep_junctions(const PathsWork &x, const Junctions &junctions
 // Finds the multipliers of a block of junctions, and how far their atoms move.
 static inline WindowResult solve_junctions(const PathsWork &x, const Junctions &junctions, double *scratch,
                                            Tally &part) {
-    const int which = reach_of(x, junctions, Arena(scratch, longest_piece));
+    const int which = reach_of(x, junctions, Arena(scratch, longest_cut));
     if (which == PathPlan::n_reaches) return window_failed;
     const int32_t reach = PathPlan::reach(which);
     const EliminationPlan &s = *junctions.kind.elimination[which];
@@ -136,10 +136,10 @@ static inline WindowResult solve_junctions(const PathsWork &x, const Junctions &
         lane[i] = i < junctions.used ? lane_of_junction(x, junctions, i, reach, lists) : lane[0];
     Memory<vec> memory = {scratch + (W * lane_values(s) + most_lanes - 1) / most_lanes * most_lanes};
     const Atoms<vec> at(lane, junctions.used, x.packed);
-    Newton<vec> newton(s, memory);
+    TreeNewton<vec> newton(s, memory);
     newton.set_masses(lane);
     const mask all = first_lanes(junctions.used);
-    PositionsBlock<Newton<vec>> block(x.strict, lane, part, at, newton, false);
+    PositionsBlock<TreeNewton<vec>> block(x.strict, lane, part, at, newton, false);
     const Solved<vec> out = find_multipliers(block, all);
     const bool untouched = !any(all & ~out.untouched);
     if (!untouched && any(all & ~out.converged)) return window_failed;

@@ -4,9 +4,9 @@
 
 #include "core/kernels/memory/arena.hpp"
 #include "core/kernels/memory/cut.hpp"
-#include "core/kernels/molecules/elimination_plan.hpp"
-#include "core/kernels/molecules/paths/plan.hpp"
 #include "core/kernels/newton/seams.hpp"
+#include "core/plan/elimination.hpp"
+#include "core/plan/paths.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 

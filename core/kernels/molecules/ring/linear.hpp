@@ -13,7 +13,7 @@
 namespace holonomic::HOL_ISA::graph {
 
 template <class V>
-struct Ring {
+struct RingLinear {
     V *to_last;  // [n_core] what the last row gets of y of each, and each of the last one's t
     V *reach;  // for every atom of the ring: the same of its children with the bond before it, then with the one behind
     static int64_t values(const EliminationPlan &s) { return s.n_core + 2 * static_cast<int64_t>(s.n_tree); }
@@ -125,7 +125,7 @@ HOL_INLINE RingJoint<V> up_ring_joint(const Molecules<V> &x, int32_t before, int
 
 // From right-hand sides to u of the ring and of the children of its atoms, all in t of the rows.
 template <bool bare, class V>
-static inline void up_ring(Molecules<V> &x, const Ring<V> &ring) {
+static inline void up_ring(Molecules<V> &x, const RingLinear<V> &ring) {
     V *reach = ring.reach, *to_last = ring.to_last;
     RingPivots<V> pivots = {}, lowered = {};
     V carried = {}, y_of_last = {}, margin = x.margin;
@@ -171,16 +171,17 @@ static inline void up_ring(Molecules<V> &x, const Ring<V> &ring) {
     row.t = row.E = (row.t + y_of_last) * row.r;
 }
 
-// The same for another right-hand side.
-template <bool bare, class V>
-static inline void substitute_ring(const Molecules<V> &x, const Ring<V> &ring) {
-    const V *reach = ring.reach, *to_last = ring.to_last;
+// The same for another right-hand side, of forces and velocities or of Newton's method. to_next(row): the multiplier of
+// a row of the ring in the one behind it. joint(rows, known): substitutes the children of an atom.
+template <bool bare, class Rows, class V, class System, class ToNext, class Joint>
+HOL_INLINE void substitute_ring(const System &x, const V *reach, const V *to_last, const ToNext &to_next,
+                                const Joint &joint) {
     V carried = {}, y_of_last = {};
     const int32_t first = bare ? 0 : x.s.n_tree;
     for_ring<bare>(x.s, [&](int32_t before, int32_t slot, int k) HOL_FORCED {
         choose_number<0, bare ? 0 : most_on_ring>(k, [&](auto known) HOL_FORCED {
             if constexpr (known > 0) {
-                const AtomRows<V> rows(x, slot);
+                const Rows rows(x, slot);
                 V y_to = x.row[before].t, y_from = x.row[slot].t;
                 for (int a = 0; a < known; ++a) {
                     y_to = mul_add(reach[a], rows.bond(a).t, y_to);
@@ -189,18 +190,25 @@ static inline void substitute_ring(const Molecules<V> &x, const Ring<V> &ring) {
                 reach += 2 * known;
                 x.row[before].t = y_to;
                 x.row[slot].t = y_from;
-                substitute_joint<known, true>(rows, known, Memory<V>());
+                joint(rows, known);
             }
         });
         if (slot == first) return;
-        BondRow<V> &row = x.row[before];
+        auto &row = x.row[before];
         const V y = row.t + carried;
         y_of_last = mul_add(*to_last++, y, y_of_last);
-        carried = row.l * y;
+        carried = to_next(row) * y;
         row.t = y * row.r;
     });
-    BondRow<V> &row = x.row[x.s.n_bonds - 1];
+    auto &row = x.row[x.s.n_bonds - 1];
     row.t = (row.t + y_of_last) * row.r;
+}
+template <bool bare, class V>
+static inline void substitute_ring(const Molecules<V> &x, const RingLinear<V> &ring) {
+    substitute_ring<bare, AtomRows<V>, V>(
+        x, ring.reach, ring.to_last, [](const BondRow<V> &row) HOL_FORCED { return row.l; },
+        [](const AtomRows<V> &rows, auto known)
+            HOL_FORCED { substitute_joint<known, true>(rows, known, Memory<V>()); });
 }
 
 // A bond's own size and its error per |d|, in squares: tree/siblings.hpp.
@@ -234,7 +242,7 @@ HOL_INLINE void look_at_ring_atom(Molecules<V> &x, int32_t before, int32_t slot,
 
 // From u to t of the ring and of its atoms' children. `look`: tests the result, as down_joint() does.
 template <bool look, bool bare, class V>
-static inline void down_ring(Molecules<V> &x, const Ring<V> &ring) {
+static inline void down_ring(Molecules<V> &x, const RingLinear<V> &ring) {
     const EliminationPlan &s = x.s;
     const V *reach = ring.reach + 2 * static_cast<int64_t>(s.n_tree - s.child_start[s.n_tree]);
     const V last = x.row[s.n_bonds - 1].t, *to_last = ring.to_last + s.n_core - 1;

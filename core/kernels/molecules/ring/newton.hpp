@@ -105,7 +105,7 @@ struct RingNewton {
         return abs(excess(x.row[k].D + (right - displacement(k)), x.row[k].a2)) * x.row[k].per_a2;
     }
 
-    // E as a fraction A / F, as in eliminate/remainder.hpp.
+    // E as a fraction A / F, as in eliminate/effective_mass.hpp.
     struct Fraction {
         V A, F;
     };

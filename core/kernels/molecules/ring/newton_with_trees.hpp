@@ -82,32 +82,9 @@ static inline void factorize_ring(const NewtonSystem<V> &x) {
 // Goes up, behind the trees: from what is left of the lengths to u of the ring and of its atoms' children.
 template <class V>
 static inline void substitute_ring(const NewtonSystem<V> &x) {
-    const V *reach = x.reach_up, *to_last = x.core_lower;
-    V carried = {}, y_of_last = {};
-    for_ring<false>(x.s, [&](int32_t before, int32_t slot, int k) HOL_FORCED {
-        choose_number<0, most_on_ring>(k, [&](auto known) HOL_FORCED {
-            if constexpr (known > 0) {
-                const NewtonAtom<V> atom(x, slot);
-                V y_to = x.row[before].t, y_from = x.row[slot].t;
-                for (int a = 0; a < known; ++a) {
-                    y_to = mul_add(reach[a], atom.bond(a).t, y_to);
-                    y_from = mul_add(reach[known + a], atom.bond(a).t, y_from);
-                }
-                reach += 2 * known;
-                x.row[before].t = y_to;
-                x.row[slot].t = y_from;
-                substitute_newton_joint<known, true, V>(atom, known);
-            }
-        });
-        if (slot == x.s.n_tree) return;
-        NewtonRow<V> &row = x.row[before];
-        const V y = row.t + carried;
-        y_of_last = mul_add(*to_last++, y, y_of_last);
-        carried = row.up * y;
-        row.t = y * row.r;
-    });
-    NewtonRow<V> &row = x.row[x.s.n_bonds - 1];
-    row.t = (row.t + y_of_last) * row.r;
+    substitute_ring<false, NewtonAtom<V>, V>(
+        x, x.reach_up, x.core_lower, [](const NewtonRow<V> &row) HOL_FORCED { return row.up; },
+        [](const NewtonAtom<V> &atom, auto known) HOL_FORCED { substitute_newton_joint<known, true, V>(atom, known); });
 }
 
 // Goes down: puts the corrections of the ring into t, adds them to tau in the lanes of `active`, and gives its atoms'

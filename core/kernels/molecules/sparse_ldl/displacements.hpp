@@ -1,5 +1,6 @@
-// The bonds of molecules by sparse LDL^T at the position level (ldl_plan.hpp), what is left of their lengths, and what
-// multipliers displace their atoms by. Of one molecule (V = double) bonds are found four at a time; W are in lanes.
+// The bonds of molecules by sparse LDL^T at the position level (core/plan/sparse_ldl.hpp), what is left of their
+// lengths, and what multipliers displace their atoms by. Of one molecule (V = double) bonds are found four at a time; W
+// are in lanes.
 #pragma once
 
 #include "core/kernels/molecules/scratch.hpp"

@@ -1,6 +1,6 @@
-// Linear equations of molecules with cycles, and of large ones, by sparse LDL^T (ldl_plan.hpp): A t = b as it stands,
-// and what it is made of. Of one molecule (V = double), or of W of one shape in lanes. factor.hpp solves them;
-// whether that will do without refinement, error_bound.hpp says.
+// Linear equations of molecules with cycles, and of large ones, by sparse LDL^T (core/plan/sparse_ldl.hpp): A t = b as
+// it stands, and what it is made of. Of one molecule (V = double), or of W of one shape in lanes. factor.hpp solves
+// them; whether that will do without refinement, error_bound.hpp says.
 #pragma once
 
 #include "core/kernels/molecules/load.hpp"
@@ -175,7 +175,7 @@ struct LdlLinear {
                 q[i] = bond * bond;
             }
             const Columns<V> square = sums_of(q), of_ends = masses_at<V>(w + tile.first_site, s.from + row, s.to + row);
-            some(t, k) = sides_of(tile, k, terms);
+            some(t, k) = right_hand_sides_of(tile, k, terms);
             some(per_pivot, k) = some(diagonal, k - tile.first) = of_ends * square;
             some(size, k) = root_of(square);
         }
@@ -183,7 +183,7 @@ struct LdlLinear {
         if (terms & (given | rates)) add_given(tile, t);
     }
     // What velocities and inputs give to the right-hand sides of columns k ..
-    HOL_FORCED Columns<V> sides_of(const Tile &tile, int64_t k, int wanted) const {
+    HOL_FORCED Columns<V> right_hand_sides_of(const Tile &tile, int64_t k, int wanted) const {
         const int64_t row = tile.first_row + (k - tile.first);
         const int32_t *const from = s.from + row, *const to = s.to + row;
         const Rows<V> of = a_of(tile);

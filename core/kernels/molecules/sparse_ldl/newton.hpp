@@ -1,6 +1,6 @@
-// Newton's method for the positions of molecules by sparse LDL^T (ldl_plan.hpp): the matrix of new bonds D times
-// reference bonds b as it stands, L D U. What can be done while a tile is in a cache is done together: on the way up
-// bonds, what is left of them and factors, on the way down corrections and displacements.
+// Newton's method for the positions of molecules by sparse LDL^T (core/plan/sparse_ldl.hpp): the matrix of new bonds D
+// times reference bonds b as it stands, L D U. What can be done while a tile is in a cache is done together: on the way
+// up bonds, what is left of them and factors, on the way down corrections and displacements.
 #pragma once
 
 #include "core/kernels/molecules/sparse_ldl/displacements.hpp"
@@ -68,7 +68,6 @@ struct LdlNewton : LdlDisplacements<V> {
     // The lanes in which the symmetric part of the matrix is positive definite for the bonds as they are: no other root
     // has that (core/long_step/roots.hpp). The factors are lost.
     __attribute__((noinline)) MaskOf<V> is_certified() {
-        constexpr double least_pivot = 1e-10;  // of a diagonal element
         make_factors([&](const Tile &tile, const Rows<V> &rows) HOL_FORCED {
             assemble(tile, bonds_of(tile, rows), rows);
             for (int64_t e = tile.first_entry; e < tile.end_entry; e += step)

@@ -45,7 +45,7 @@ struct LdlWay {
                           Written<V>{which, nullptr, x.lane, add, first});
         });
     }
-    void write(const Outputs &out, unsigned which, Tally &tally) const {
+    void write(const LinearOutputs &out, unsigned which, Tally &tally) const {
         if (out.virial)
             share_out(x.team, x.s.n_tiles, tally, [&](int32_t i, Tally &part) HOL_FORCED {
                 const Tile &tile = x.s.tile[i];
@@ -56,7 +56,7 @@ struct LdlWay {
             });
         write_bonds_and_pulls(*this, out, which);
     }
-    void project(const Outputs &out, bool twice, unsigned which, Tally &tally) const {
+    void project(const LinearOutputs &out, bool twice, unsigned which, Tally &tally) const {
         write_all_but_atoms(*this, out, which, tally);
         // Nothing reads v any more, so that tiles of one molecule write it as they come.
         const bool tile_by_tile = LdlLinear<V>::step == 4 && twice && !x.lane[0].shared;

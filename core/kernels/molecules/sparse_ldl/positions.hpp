@@ -1,6 +1,6 @@
 // Position level of molecules with cycles, and of large ones, by sparse LDL^T: one (V = double), or W in lanes.
-// A way of position_level.hpp, with the equations of newton.hpp (theory (58)). It relies on ldl_plan.hpp for the order
-// of elimination.
+// A way of position_level.hpp, with the equations of newton.hpp (theory (58)). It relies on core/plan/sparse_ldl.hpp
+// for the order of elimination.
 #pragma once
 
 #include "core/kernels/molecules/atoms/vectors.hpp"

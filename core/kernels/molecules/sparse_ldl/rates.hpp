@@ -8,7 +8,7 @@ namespace holonomic::HOL_ISA::graph {
 // Of a tile; those of bonds between tiles are not known yet.
 template <class V>
 __attribute__((noinline)) void find_rates(const LdlLinear<V> &x, const Tile &tile) {
-    for (int64_t k = tile.first; k < tile.end; k += x.step) x.some(x.rate, k) = x.sides_of(tile, k, rates);
+    for (int64_t k = tile.first; k < tile.end; k += x.step) x.some(x.rate, k) = x.right_hand_sides_of(tile, k, rates);
 }
 template <class V>
 HOL_INLINE void find_outer_rates(const LdlLinear<V> &x, const Tile &tile) {

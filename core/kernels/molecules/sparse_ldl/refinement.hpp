@@ -78,7 +78,7 @@ struct LdlRefinement {
     __attribute__((noinline)) void start(const Tile &tile) const {
         open(tile);
         x.load_inputs(tile);
-        for (int64_t k = tile.first; k < tile.end; k += step) x.some(side, k) = x.sides_of(tile, k, terms);
+        for (int64_t k = tile.first; k < tile.end; k += step) x.some(side, k) = x.right_hand_sides_of(tile, k, terms);
         x.add_given(tile, side);
         for (int32_t k = tile.first; k < tile.end; ++k) solution[k] = x.t[k];
     }
@@ -207,7 +207,7 @@ struct LdlRefinement {
     // To the lanes that were not refined, the bonds that they would have had without the others.
     void restore_bonds(MaskOf<V> which) const {
         if constexpr (Width<V>::lanes > 1) {
-            if (x.box.shape == Box::none || !any(which)) return;
+            if (x.box.lattice == Box::none || !any(which)) return;
             const Tile &tile = s.tile[0];
             for (int64_t row = tile.first_row; row < tile.end_row; ++row) {
                 Row &bond = x.d[row], fast = x.r.at_four_times(s.to[row]) - x.r.at_four_times(s.from[row]);

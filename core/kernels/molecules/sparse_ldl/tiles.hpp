@@ -1,11 +1,11 @@
-// What is done by sparse LDL^T, tile by tile (ldl_plan.hpp): columns one after the other, what tiles give to each
-// other, triangular solves, and what is read of a tile's atoms.
+// What is done by sparse LDL^T, tile by tile (core/plan/sparse_ldl.hpp): columns one after the other, what tiles give
+// to each other, triangular solves, and what is read of a tile's atoms.
 #pragma once
 
 #include "core/kernels/molecules/molecules.hpp"
 #include "core/kernels/molecules/share_out.hpp"
-#include "core/kernels/molecules/sparse_ldl/ldl_plan.hpp"
 #include "core/kernels/molecules/sparse_ldl/rows.hpp"
+#include "core/plan/sparse_ldl.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 
@@ -259,7 +259,7 @@ HOL_INLINE int64_t most_masses(const LdlPlan &s) { return in_fours(2 * static_ca
 
 // The nearest image of a bond.
 HOL_INLINE void take_image(const Box &box, Row &d) {
-    if (box.shape == Box::orthorhombic) {
+    if (box.lattice == Box::orthorhombic) {
         const Row per_side = {box.per_side[0], box.per_side[1], box.per_side[2], 0},
                   minus_side = {box.minus_side[0], box.minus_side[1], box.minus_side[2], 0};
         d = multiply_add(round_row(d * per_side), minus_side, d);
@@ -279,7 +279,7 @@ HOL_INLINE void take_image(const Box &box, RowInLanes<V> &d) {
 template <class V>
 HOL_INLINE RowOf<V> bond_at(const LdlPlan &s, int64_t row, const Box &box, const Rows<V> &r) {
     RowOf<V> bond = r.at_four_times(s.to[row]) - r.at_four_times(s.from[row]);
-    if (box.shape != Box::none) take_image(box, bond);
+    if (box.lattice != Box::none) take_image(box, bond);
     return bond;
 }
 // A tile's bonds as they come, from the coordinates of their ends: as many as are worked on at a time, the inert ones

@@ -3,9 +3,9 @@
 
 #include "core/kernels/molecules/atoms/consecutive.hpp"
 #include "core/kernels/molecules/blocks.hpp"
-#include "core/kernels/molecules/elimination_plan.hpp"
 #include "core/kernels/molecules/image.hpp"
 #include "core/kernels/molecules/small/twin.hpp"
+#include "core/plan/elimination.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 

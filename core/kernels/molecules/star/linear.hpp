@@ -204,7 +204,7 @@ HOL_INLINE void find_star_sides(const AtomArray &v, const AtomArray &f, const St
 
 // Solves and writes. Returns the lanes that are done.
 template <Inlined where, class AnyStar, int N, class V>
-HOL_INLINE unsigned finish_star(const Outputs &to, const StarAtoms<where, N, V> &atoms, AnyStar &star, const V *y,
+HOL_INLINE unsigned finish_star(const LinearOutputs &to, const StarAtoms<where, N, V> &atoms, AnyStar &star, const V *y,
                                 MaskOf<V> in_use, Tally &tally) {
     V t[N];
     star.solve(y, t);

@@ -3,9 +3,9 @@
 // light centre among very unequal masses, go the way of trees.
 #pragma once
 
-#include "core/kernels/molecules/elimination_plan.hpp"
 #include "core/kernels/molecules/star/equations.hpp"
 #include "core/kernels/molecules/store.hpp"
+#include "core/plan/elimination.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 

@@ -9,7 +9,7 @@
 namespace holonomic::HOL_ISA::graph {
 
 template <class V>
-struct Newton {
+struct TreeNewton {
     typedef V Value;
     NewtonSystem<V> x;
     V *kept;              // factors, while new ones are made for some lanes
@@ -28,7 +28,7 @@ struct Newton {
                NewtonMemory<V, 0>::values(s.max_joint);
     }
 
-    Newton(const EliminationPlan &s, Memory<V> &memory)
+    TreeNewton(const EliminationPlan &s, Memory<V> &memory)
         : x{s, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, memory}, kept(), lengths(memory.values(2)), opening() {
         x.w = memory.values(s.n_atoms);
         x.row = reinterpret_cast<NewtonRow<V> *>(memory.values(row_values * s.n_bonds));

@@ -12,7 +12,7 @@ inline BondRow<double> one_of(const BondRow<vec> &row, int i) {
     return {one_of(row.d, i), row.q[i], row.E[i], row.t[i], row.l[i], row.r[i]};
 }
 
-// Of a piece, or of the top. An atom's number in `cancelling` is that of its step times that of lanes, plus its lane.
+// Of a tile, or of the top. An atom's number in `cancelling` is that of its step times that of lanes, plus its lane.
 struct TreeFlagged {
     Cancelling *cancelling;
     double *margin;  // negative if the tree is to be left to the extended-precision solver

@@ -5,7 +5,7 @@
 #include <cstddef>
 
 #include "core/kernels/molecules/molecules.hpp"
-#include "core/kernels/molecules/tree_batch/batch.hpp"
+#include "core/plan/tree_batch.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 
@@ -22,7 +22,7 @@ HOL_INLINE vec numbers_at(const double *const *p, int64_t offset) {
 #endif
 }
 
-// Where an element (batch.hpp) of working values of type Row = n vectors begins.
+// Where an element (core/plan/tree_batch.hpp) of working values of type Row = n vectors begins.
 template <class Row>
 HOL_INLINE double *element_of(Row *first, int32_t element) {
     constexpr int64_t n = sizeof(Row) / sizeof(vec);
@@ -153,7 +153,7 @@ HOL_INLINE vec masses_of(const MoleculeLane *lane, const int32_t *atom) {
     return numbers_at(p, 0);
 }
 
-// Trees of fewer pieces stand in a cache.
+// Trees of fewer tiles stand in a cache.
 constexpr int32_t pieces_of_cache = 16;
 
 // The trees of a batch of trees, step by step.
@@ -173,7 +173,7 @@ struct BatchTrees {
     template <bool packed, bool masses, class... Arrays>
     HOL_FORCED void fetch(const int32_t *numbers, int32_t i, int32_t n, const Arrays &...arrays) const {
         constexpr int32_t ahead = rows_ahead / W;
-        if (!packed || f.n_pieces < pieces_of_cache || i + ahead >= n) return;
+        if (!packed || f.n_tiles < pieces_of_cache || i + ahead >= n) return;
         const int32_t *const number = numbers + static_cast<int64_t>(i + ahead) * W;
         const BatchAtom<true> atom(at, number);
         HOL_UNROLL
@@ -206,10 +206,10 @@ struct BatchTrees {
     };
     Range all() const { return {0, f.n_steps, 0, f.n_places, true}; }
     int32_t place_of(int32_t step) const { return step < f.n_steps ? f.step[step].first : f.n_places; }
-    // Of one large tree; piece n_pieces is the top.
-    Range piece(int32_t p) const {
-        const int32_t step = f.piece_start[p], end = f.piece_start[p + 1];
-        return {step, end, place_of(step), place_of(end), p == f.n_pieces};
+    // Of one large tree; tile n_tiles is the top.
+    Range tile(int32_t p) const {
+        const int32_t step = f.tile_start[p], end = f.tile_start[p + 1];
+        return {step, end, place_of(step), place_of(end), p == f.n_tiles};
     }
 
     // Calls body(place, bits of the lanes of `which` that hold a bond there).

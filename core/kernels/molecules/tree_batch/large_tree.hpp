@@ -1,5 +1,5 @@
-// The linear equations of one large tree, piece by piece (batch.hpp): what is done with a piece is done while it is in
-// a cache, and by any thread.
+// The linear equations of one large tree, tile by tile (core/plan/tree_batch.hpp): what is done with a tile is done
+// while it is in a cache, and by any thread.
 #pragma once
 
 #include "core/kernels/molecules/share_out.hpp"
@@ -9,60 +9,60 @@ namespace holonomic::HOL_ISA::graph {
 
 struct LargeTree {
     typedef BatchTrees::Range Range;
-    struct Piece {
+    struct Tile {
         Cancelling cancelling;
         double margin;
     };
     BatchLinear &z;
     const LongTeam *team;
-    Piece *piece;  // [n_pieces + 1]
+    Tile *tile;  // [n_tiles + 1]
 
     static int64_t bytes(const TreeBatch &f) {
-        return (f.n_pieces > 0 ? f.n_pieces + 1 : 0) * static_cast<int64_t>(sizeof(Piece));
+        return (f.n_tiles > 0 ? f.n_tiles + 1 : 0) * static_cast<int64_t>(sizeof(Tile));
     }
     // The memory behind that of z is taken, too.
     LargeTree(BatchLinear &linear, const LongTeam *threads, Memory<vec> &memory)
-        : z(linear), team(threads), piece(reinterpret_cast<Piece *>(memory.next)) {
-        static_assert(sizeof(Piece) % sizeof(double) == 0, "");
+        : z(linear), team(threads), tile(reinterpret_cast<Tile *>(memory.next)) {
+        static_assert(sizeof(Tile) % sizeof(double) == 0, "");
         memory.next += bytes(z.f) / static_cast<int64_t>(sizeof(double));
-        for (int32_t p = 0; p <= top(); ++p) piece[p] = {};
+        for (int32_t p = 0; p <= top(); ++p) tile[p] = {};
         z.per_cancelled2 = 1 / most_cancelled2(z.f.elimination[0]->n_bonds);
     }
 
-    int32_t top() const { return z.f.n_pieces; }
+    int32_t top() const { return z.f.n_tiles; }
     Memory<vec> memory(int32_t p) const {
         Memory<vec> own = z.working;
         own.values(p * BatchLinear::joint_values(z.f));
         return own;
     }
     template <class Body>
-    void for_pieces(const Body &body) const {
+    void for_tiles(const Body &body) const {
         share_out(team, top(), body);
     }
 
-    // The top is loaded before the pieces, which add to it.
+    // The top is loaded before the tiles, which add to it.
     void load(int32_t p) const {
-        z.load(z.piece(p));
-        piece[p].cancelling.n_extended = 0;
-        piece[p].margin = 1;
+        z.load(z.tile(p));
+        tile[p].cancelling.n_extended = 0;
+        tile[p].margin = 1;
     }
     void eliminate(int32_t p) const {
-        const Range range = z.piece(p);
-        Piece &own = piece[p];
+        const Range range = z.tile(p);
+        Tile &own = tile[p];
         const vec margin = z.up(range, memory(p), splat(1), TreeFlagged{&own.cancelling, &own.margin});
         if (any(less(margin, vec{}))) own.margin = -1;
     }
     void substitute_back(int32_t p) const {
-        Piece &own = piece[p];
-        z.down<true>(z.piece(p), TreeFlagged{&own.cancelling, &own.margin});
-        if (any(~z.finite_in(z.piece(p)))) own.margin = -1;
+        Tile &own = tile[p];
+        z.down<true>(z.tile(p), TreeFlagged{&own.cancelling, &own.margin});
+        if (any(~z.finite_in(z.tile(p)))) own.margin = -1;
     }
 
     // Cancelling bonds have been found, and are to be looked at again.
     bool to_be_repeated() const {
         bool any_new = false;
         for (int32_t p = 0; p <= top(); ++p) {
-            Cancelling &cancelling = piece[p].cancelling;
+            Cancelling &cancelling = tile[p].cancelling;
             any_new = any_new || (cancelling.n > 0 && !cancelling.again);
             cancelling.again = true;
         }
@@ -70,18 +70,18 @@ struct LargeTree {
     }
     bool is_good() const {
         for (int32_t p = 0; p <= top(); ++p)
-            if (!(piece[p].margin >= 0)) return false;
+            if (!(tile[p].margin >= 0)) return false;
         return true;
     }
 
     // The way of linear_level.hpp.
     unsigned in_use() const { return 1; }
     unsigned solve() const { return load_and_solve() && !(solved_twice(z.in) && any_overcorrected()) ? 1 : 0; }
-    void write(const Outputs &out, unsigned which, Tally &tally) const {
+    void write(const LinearOutputs &out, unsigned which, Tally &tally) const {
         for_ranges([&](const Range &range) { write_bonds_and_pulls(z, out, all_lanes, range); });
         if (out.virial) add_virial(which, tally);
     }
-    void project(const Outputs &out, bool twice, unsigned which, Tally &tally) const {
+    void project(const LinearOutputs &out, bool twice, unsigned which, Tally &tally) const {
         write_all_but_atoms(*this, out, which, tally);
         project(twice);
         for_ranges([&](const Range &range) { z.write_velocities(range, *out.g, all_lanes); });
@@ -91,13 +91,13 @@ struct LargeTree {
     bool load_and_solve() const {
         do {
             load(top());
-            for_pieces([&](int32_t p) {
+            for_tiles([&](int32_t p) {
                 load(p);
                 eliminate(p);
             });
             eliminate(top());
             substitute_back(top());
-            for_pieces([&](int32_t p) { substitute_back(p); });
+            for_tiles([&](int32_t p) { substitute_back(p); });
         } while (to_be_repeated());
         return is_good();
     }
@@ -105,8 +105,8 @@ struct LargeTree {
     // Calls write(range) for all.
     template <class Write>
     void for_ranges(const Write &write) const {
-        for_pieces([&](int32_t p) { write(z.piece(p)); });
-        write(z.piece(top()));
+        for_tiles([&](int32_t p) { write(z.tile(p)); });
+        write(z.tile(top()));
     }
     // In the order of the slots, whatever lanes there are.
     void add_virial(unsigned which, Tally &tally) const {
@@ -117,28 +117,28 @@ struct LargeTree {
     BondRow<double> bond_at(int32_t element) const { return one_of(z.row[element / W], element % W); }
 
     void project(bool twice) const {
-        z.add_pulls_to_velocities(z.piece(top()));
-        if (!twice) return for_pieces([&](int32_t p) { z.add_pulls_to_velocities(z.piece(p)); });
-        z.find_rates(z.piece(top()));
-        for_pieces([&](int32_t p) {
-            z.add_pulls_to_velocities(z.piece(p));
-            z.find_rates(z.piece(p));
-            z.substitute(z.piece(p), memory(p));
+        z.add_pulls_to_velocities(z.tile(top()));
+        if (!twice) return for_tiles([&](int32_t p) { z.add_pulls_to_velocities(z.tile(p)); });
+        z.find_rates(z.tile(top()));
+        for_tiles([&](int32_t p) {
+            z.add_pulls_to_velocities(z.tile(p));
+            z.find_rates(z.tile(p));
+            z.substitute(z.tile(p), memory(p));
         });
-        z.substitute(z.piece(top()), memory(top()));
-        z.down<false>(z.piece(top()), BatchFlagged{z.margin});
-        for_pieces([&](int32_t p) {
-            z.down<false>(z.piece(p), BatchFlagged{z.margin});
-            z.add_pulls_to_velocities(z.piece(p));
+        z.substitute(z.tile(top()), memory(top()));
+        z.down<false>(z.tile(top()), BatchFlagged{z.margin});
+        for_tiles([&](int32_t p) {
+            z.down<false>(z.tile(p), BatchFlagged{z.margin});
+            z.add_pulls_to_velocities(z.tile(p));
         });
-        z.add_pulls_to_velocities(z.piece(top()));
+        z.add_pulls_to_velocities(z.tile(top()));
     }
 
     // Returns whether any atom is overcorrected by the solution.
     bool any_overcorrected() const {
         for (int32_t p = 0; p <= top(); ++p) {
-            const Cancelling &cancelling = piece[p].cancelling;
-            const Range range = z.piece(p);
+            const Cancelling &cancelling = tile[p].cancelling;
+            const Range range = z.tile(p);
             if (cancelling.n_extended > Cancelling::most_extended) {
                 for (int32_t atom = range.step * W; atom < range.inner_end() * W; ++atom)
                     if (z.f.held[z.f.step[atom / W].first] >> atom % W & 1)

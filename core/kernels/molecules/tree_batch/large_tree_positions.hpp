@@ -1,5 +1,6 @@
-// Position level of one large tree, piece by piece (batch.hpp): a system of one number for iterate.hpp. What goes up
-// is done behind what makes it, while the piece is in a cache; so it is done once too often when a solve was the last.
+// Position level of one large tree, tile by tile (core/plan/tree_batch.hpp): a system of one number for iterate.hpp.
+// What goes up is done behind what makes it, while the tile is in a cache; so it is done once too often when a solve
+// was the last.
 #pragma once
 
 #include "core/kernels/molecules/share_out.hpp"
@@ -18,26 +19,26 @@ HOL_INLINE double largest_of(const vec &a) {
 
 struct LargeTreeNewton {
     typedef BatchTrees::Range Range;
-    // What has been found of a piece.
+    // What has been found of a tile.
     struct Found {
         double error, coordinate, least, most;
     };
     BatchNewton &x;
     const LongTeam *team;
-    Found *found;        // [n_pieces + 1]
+    Found *found;        // [n_tiles + 1]
     double opening = 0;  // the largest error of the bonds as they came
     bool eliminated = false, displaced = false, moved = false;
 
     static int64_t bytes(const TreeBatch &f) {
-        return (f.n_pieces > 0 ? f.n_pieces + 1 : 0) * static_cast<int64_t>(sizeof(Found));
+        return (f.n_tiles > 0 ? f.n_tiles + 1 : 0) * static_cast<int64_t>(sizeof(Found));
     }
-    int32_t top() const { return x.f.n_pieces; }
+    int32_t top() const { return x.f.n_tiles; }
     Memory<vec> memory(int32_t p) const {
         Memory<vec> own = x.working;
         own.values(p * BatchNewton::joint_values(x.f));
         return own;
     }
-    // begin(p) of the top, then of each piece with go_on(p) behind it, and of the top again go_on().
+    // begin(p) of the top, then of each tile with go_on(p) behind it, and of the top again go_on().
     template <class Begin, class GoOn>
     void up(const Begin &begin, const GoOn &go_on) const {
         begin(top());
@@ -49,7 +50,7 @@ struct LargeTreeNewton {
     }
     void load(const PositionsCall &call) {
         const auto begin = [&](int32_t p) {
-            const Range range = x.piece(p);
+            const Range range = x.tile(p);
             vec coordinate = {}, least, most;
             choose([&](auto packed) { coordinate = x.template load_bonds<packed>(range, call); },
                    x.at.layout != elements);
@@ -77,46 +78,46 @@ struct LargeTreeNewton {
     void first_factors() {
         if (!eliminated) factorize({true});
     }
-    void factorize(Flag) {
+    void factorize(ScalarMask) {
         up(
             [&](int32_t p) {
                 BatchNewton::Errors unused = {};
-                const Range range = x.piece(p);
+                const Range range = x.tile(p);
                 for (int32_t k = range.place; k < range.end_place; ++k)
-                    Newton<vec>::measure<true>(x.row[k], x.new_D[k], unused);
+                    TreeNewton<vec>::measure<true>(x.row[k], x.new_D[k], unused);
                 x.begin_factors(range);
             },
             [&](int32_t p) { factorize_and_substitute(p); });
         eliminated = true;
     }
     void factorize_and_substitute(int32_t p) const {
-        x.make_factors(x.piece(p), memory(p));
-        x.substitute(x.piece(p), memory(p));
+        x.make_factors(x.tile(p), memory(p));
+        x.substitute(x.tile(p), memory(p));
     }
 
-    void forget(Flag which) {
+    void forget(ScalarMask which) {
         if (!which.set) return;
         for (int32_t p = 0; p < x.f.n_places; ++p) x.row[p].tau = vec{};
         displaced = false;
     }
-    void solve(Flag) {
-        if (!eliminated) up([](int32_t) {}, [&](int32_t p) { x.substitute(x.piece(p), memory(p)); });
+    void solve(ScalarMask) {
+        if (!eliminated) up([](int32_t) {}, [&](int32_t p) { x.substitute(x.tile(p), memory(p)); });
         eliminated = false;
         displace<true>();
     }
     template <bool corrected>
     void displace() {
         const mask every = first_lanes(W);
-        x.go_down<corrected>(x.piece(top()), every);
-        share_out(team, top(), [&](int32_t p) { x.go_down<corrected>(x.piece(p), every); });
+        x.go_down<corrected>(x.tile(top()), every);
+        share_out(team, top(), [&](int32_t p) { x.go_down<corrected>(x.tile(p), every); });
         displaced = true;
     }
     // The first time new factors will mostly follow.
     double move() {
         if (!displaced) displace<false>();
-        up([&](int32_t p) { found[p].error = largest_of(x.move_bonds(x.piece(p))); },
+        up([&](int32_t p) { found[p].error = largest_of(x.move_bonds(x.tile(p))); },
            [&](int32_t p) {
-               if (moved) x.substitute(x.piece(p), memory(p));
+               if (moved) x.substitute(x.tile(p), memory(p));
            });
         eliminated = moved;
         moved = true;
@@ -142,7 +143,7 @@ struct LargeTreePositions : PositionWay<double> {
         if (worst_lane(which, error, lane, tally) >= 0) tally.worst_bond = lanes.worst_bond(all_lanes);
     }
     void write_multipliers(unsigned) const {
-        newton.up([](int32_t) {}, [&](int32_t p) { lanes.write_multipliers(newton.x.piece(p), all_lanes); });
+        newton.up([](int32_t) {}, [&](int32_t p) { lanes.write_multipliers(newton.x.tile(p), all_lanes); });
     }
     // In the order of the slots, whatever lanes there are.
     void add_virial(unsigned which) const {
@@ -155,7 +156,7 @@ struct LargeTreePositions : PositionWay<double> {
     }
     void write_moves(unsigned, unsigned) {
         if (!newton.displaced) newton.displace<false>();
-        newton.up([](int32_t) {}, [&](int32_t p) { lanes.write_moves(newton.x.piece(p), all_lanes); });
+        newton.up([](int32_t) {}, [&](int32_t p) { lanes.write_moves(newton.x.tile(p), all_lanes); });
     }
 };
 

@@ -1,5 +1,5 @@
-// The linear equations of W different trees (batch.hpp). The arithmetic is that of tree/joint.hpp, so that a tree's
-// digits do not depend on whether it comes with others of its shape, with others, or alone.
+// The linear equations of W different trees (core/plan/tree_batch.hpp). The arithmetic is that of tree/joint.hpp, so
+// that a tree's digits do not depend on whether it comes with others of its shape, with others, or alone.
 #pragma once
 
 #include <stddef.h>
@@ -28,7 +28,7 @@ struct BatchLinear : BatchTrees {
     }
     static int64_t values(const TreeBatch &f) {
         const int64_t rows = f.n_rows(), row_values = sizeof(BondRow<vec>) / sizeof(vec);
-        return (row_values + 6 + 1) * rows + f.n_steps + f.n_pairs + (1 + f.n_pieces) * joint_values(f);
+        return (row_values + 6 + 1) * rows + f.n_steps + f.n_pairs + (1 + f.n_tiles) * joint_values(f);
     }
 
     BatchLinear(const TreeBatch &batch, const MoleculeLane *lanes, bool packed, const Box &b,
@@ -42,7 +42,7 @@ struct BatchLinear : BatchTrees {
         w = memory.values(f.n_steps);
         pair = memory.values(f.n_pairs);
         working = memory;
-        memory.values((1 + f.n_pieces) * joint_values(f));
+        memory.values((1 + f.n_tiles) * joint_values(f));
         for (int64_t p = f.n_places; p < rows; ++p) {
             row[p] = BondRow<vec>{};
             pull[p] = velocity[p] = vec3{};
@@ -171,7 +171,7 @@ struct BatchLinear : BatchTrees {
     template <bool with_length>
     __attribute__((noinline)) void write_bonds(const Range &range, double factor, double *out, unsigned which) const {
         for_held(range, which, [&](int32_t p, unsigned lanes) HOL_FORCED {
-            if (f.n_pieces >= pieces_of_cache && p + rows_ahead / W < f.n_places)
+            if (f.n_tiles >= pieces_of_cache && p + rows_ahead / W < f.n_places)
                 for (int i = 0; i < W; ++i) __builtin_prefetch(out + bond_of(i, p + rows_ahead / W), 1, 2);
             write_values(p, lanes, mul_add(row[p].t, with_length ? sqrt(row[p].q) : splat(factor), vec{}), out);
         });

@@ -1,5 +1,5 @@
-// Newton's method for the positions of W different trees (batch.hpp): a system for iterate.hpp. The arithmetic is that
-// of tree/newton.hpp, so that a tree's digits do not depend on whether it comes with others.
+// Newton's method for the positions of W different trees (core/plan/tree_batch.hpp): a system for iterate.hpp. The
+// arithmetic is that of tree/newton.hpp, so that a tree's digits do not depend on whether it comes with others.
 #pragma once
 
 #include <stddef.h>
@@ -26,7 +26,7 @@ struct BatchNewton : BatchTrees {
     static int64_t values(const TreeBatch &f) {
         const int64_t rows = f.n_rows(), row_values = sizeof(BatchRow) / sizeof(vec);
         return (row_values + 6 + 1 + 3) * rows + f.n_steps + 4 * static_cast<int64_t>(f.n_pairs) +
-               (1 + f.n_pieces) * joint_values(f);
+               (1 + f.n_tiles) * joint_values(f);
     }
 
     BatchNewton(const TreeBatch &batch, const MoleculeLane *lanes, bool packed, Memory<vec> &memory)
@@ -41,7 +41,7 @@ struct BatchNewton : BatchTrees {
         upper = memory.values(f.n_pairs);
         kept = memory.values(3 * rows + 2 * f.n_pairs);
         working = memory;
-        memory.values((1 + f.n_pieces) * joint_values(f));
+        memory.values((1 + f.n_tiles) * joint_values(f));
         for (int64_t p = f.n_places; p < rows; ++p) {
             row[p] = BatchRow{};
             new_D[p] = pull[p] = vec3{};
@@ -95,12 +95,12 @@ struct BatchNewton : BatchTrees {
     }
 
     // What Newton has, by these names.
-    typedef Newton<vec>::Errors Errors;
+    typedef TreeNewton<vec>::Errors Errors;
     __attribute__((noinline)) vec open(const Range &range) {
         Errors errors = {};
         for (int32_t p = range.place; p < range.end_place; ++p) {
             new_D[p] = row[p].D;
-            Newton<vec>::measure<true>(row[p], row[p].D, errors);
+            TreeNewton<vec>::measure<true>(row[p], row[p].D, errors);
         }
         return errors.largest();
     }
@@ -119,7 +119,7 @@ struct BatchNewton : BatchTrees {
         for (int32_t p = 0; p < f.n_places; ++p) {
             BatchRow &bond = row[p];
             const vec stretch = bond.stretch, t = bond.t;
-            Newton<vec>::measure<true>(bond, new_D[p], unused);
+            TreeNewton<vec>::measure<true>(bond, new_D[p], unused);
             bond.stretch = select(which, bond.stretch, stretch);
             bond.t = select(which, bond.t, t);
         }
@@ -171,7 +171,7 @@ struct BatchNewton : BatchTrees {
                     turned = {keep(there, turned.x), keep(there, turned.y), keep(there, turned.z)};
                 }
                 new_D[p] = row[p].D + turned;
-                Newton<vec>::measure<false>(row[p], new_D[p], errors);
+                TreeNewton<vec>::measure<false>(row[p], new_D[p], errors);
             }
         }
         return errors.largest();

@@ -1,5 +1,5 @@
 // Position level of a batch of trees, a different one in each lane: a way of position_level.hpp. newton.hpp has the
-// equations (theory (58)); the order of steps is that of batch.hpp.
+// equations (theory (58)); the order of steps is that of core/plan/tree_batch.hpp.
 #pragma once
 
 #include "core/kernels/memory/prefetch.hpp"

@@ -200,11 +200,11 @@ struct BatchWay {
         ahead.fetch();
         return z.solve();
     }
-    void write(const Outputs &out, unsigned which, Tally &tally) const {
+    void write(const LinearOutputs &out, unsigned which, Tally &tally) const {
         write_bonds_and_pulls(z, out, which, z.all());
         if (out.virial) z.add_virial(which, tally);
     }
-    void project(const Outputs &out, bool twice, unsigned which, Tally &tally) const {
+    void project(const LinearOutputs &out, bool twice, unsigned which, Tally &tally) const {
         write_all_but_atoms(*this, out, which, tally);
         z.add_pulls_to_velocities(z.all());
         if (twice) {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/kernels/isa/lanes.hpp"
-#include "core/kernels/molecules/tree_batch/batch.hpp"
+#include "core/plan/tree_batch.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 

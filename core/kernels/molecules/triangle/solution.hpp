@@ -5,10 +5,10 @@
 
 #include "core/kernels/arithmetic/thresholds.hpp"
 #include "core/kernels/molecules/atoms/consecutive.hpp"
-#include "core/kernels/molecules/elimination_plan.hpp"
 #include "core/kernels/molecules/image.hpp"
 #include "core/kernels/molecules/molecules.hpp"
 #include "core/kernels/molecules/virial.hpp"
+#include "core/plan/elimination.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 
@@ -103,7 +103,7 @@ HOL_INLINE Triangle<V> triangle_of(const Box &box, const Vector3<V> *r) {
     HOL_UNROLL
     for (int k = 0; k < 3; ++k) x.q[k] = dot(x.d[k], x.d[k]);
     x.closed = ~Width<V>::none();
-    if (box.shape != Box::none) {
+    if (box.lattice != Box::none) {
         const Vector3<V> sum = x.d[0] + (x.d[1] + x.d[2]);
         x.closed = less(dot(sum, sum), 1e-12 * (x.q[0] + (x.q[1] + x.q[2])));
     }

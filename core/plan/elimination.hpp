@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-#include "core/kernels/molecules/way.hpp"
+#include "core/plan/way.hpp"
 
 namespace holonomic {
 
@@ -12,9 +12,9 @@ namespace holonomic {
 // (tree/many.hpp), and with k products for positions.
 static constexpr int32_t values_of_joint(int32_t k) { return k > most_decomposed ? 9 + 3 * k : k * (k - 1) / 2; }
 
-struct LdlPlan;      // core/kernels/molecules/sparse_ldl/ldl_plan.hpp
-struct PathPlan;     // core/kernels/molecules/paths/plan.hpp
-struct NetworkPlan;  // core/kernels/molecules/network/plan.hpp
+struct LdlPlan;      // core/plan/sparse_ldl.hpp
+struct PathPlan;     // core/plan/paths.hpp
+struct NetworkPlan;  // core/plan/network.hpp
 
 // Atoms and bonds are renumbered. The *slot* of an atom: first the atoms of the trees, each after its children, then
 // the root of a tree, or the atoms of the core. In molecules that may go in lanes the slots of the children of all
@@ -74,23 +74,23 @@ struct EliminationPlan {
     const int32_t *row;
 
     // Atoms of a large tree with children, where most can be worked on W at a time: within a run none depends on
-    // another, and all have the same number of children, 4 standing for more. Slots [p slots_of_piece, (p + 1)
-    // slots_of_piece) are piece p; atoms whose children, and theirs, are all in the same piece stand in its runs, the
-    // others in those of piece n_pieces, the top, which comes last. No pieces: the tree is small, or its atoms don't
+    // another, and all have the same number of children, 4 standing for more. Slots [p slots_of_tile, (p + 1)
+    // slots_of_tile) are tile p; atoms whose children, and theirs, are all in the same tile stand in its runs, the
+    // others in those of tile n_tiles, the top, which comes last. No tiles: the tree is small, or its atoms don't
     // fill lanes.
-    struct Run {
+    struct AtomRun {
         int32_t first, count, children;  // slots slot[first] ..
-        int32_t level;                   // how many atoms of the piece or the top must come before
+        int32_t level;                   // how many atoms of the tile or the top must come before
     };
     struct Runs {
-        const Run *run;
+        const AtomRun *run;
         const int32_t *slot;
-        const int32_t *piece_start;  // [n_pieces + 2] runs of each piece, then of the top
+        const int32_t *tile_start;  // [n_tiles + 2] runs of each tile, then of the top
     };
     Runs runs;
-    int32_t n_pieces;
+    int32_t n_tiles;
 
-    // Of a graph, or of a large tree without pieces, unless the list would be long: all its bonds by sparse LDL^T; else
+    // Of a graph, or of a large tree without tiles, unless the list would be long: all its bonds by sparse LDL^T; else
     // nullptr.
     const LdlPlan *ldl;
     // Of a large molecule of few junctions and long paths; else nullptr.

@@ -5,7 +5,7 @@
 
 #include <stdint.h>
 
-#include "core/kernels/molecules/elimination_plan.hpp"
+#include "core/plan/elimination.hpp"
 
 namespace holonomic {
 
@@ -16,7 +16,7 @@ namespace holonomic {
 // most_decomposed with others of as many, and so on. The last step has the roots.
 //
 // Of one large tree a step has atoms that do not depend on each other, each with the bonds to its children in a lane of
-// its own; the bond above may be in any lane. Its steps are cut into the pieces of the elimination plan, and then come
+// its own; the bond above may be in any lane. Its steps are cut into the tiles of the elimination plan, and then come
 // those of the top.
 //
 // Numbers per step or place are [..][lanes]. An *element* is a place's number times that of lanes, plus the lane.
@@ -33,14 +33,14 @@ struct TreeBatch {
     const Step *step;
     const int32_t *atom;   // per step: its atom; 0 in lanes that have none
     const int32_t *above;  // per step: the element of the bond above; of a root in place n_places, without an atom in
-                           // the place behind, of which each piece has its own
+                           // the place behind, of which each tile has its own
     const int32_t *lower;  // per place: the child; of an empty place the step's atom
     const int32_t *bond;   // per place, or 0
     const uint16_t *held;  // [n_places] bits: the lanes that have a bond here
-    int32_t n_pieces;      // of one large tree, else 0
-    const int32_t *piece_start;  // [n_pieces + 2] steps of each piece, then of the top with the root
-    const int32_t *element;      // by slot: of the bond above
-    int32_t n_rows() const { return n_places + 2 + n_pieces; }
+    int32_t n_tiles;       // of one large tree, else 0
+    const int32_t *tile_start;  // [n_tiles + 2] steps of each tile, then of the top with the root
+    const int32_t *element;     // by slot: of the bond above
+    int32_t n_rows() const { return n_places + 2 + n_tiles; }
     const EliminationPlan *const *elimination;  // [n_trees]
 
     // Steps and what there is per step and place are one block of numbers: point_into() says in which order. Of

@@ -27,14 +27,14 @@ struct Ways {
 // Positions of what is in a batch of trees for its forces: the largest trees have another way.
 static inline bool moves_in_batch(Way positions) { return positions == Way::tree || positions == Way::large_tree; }
 
-// Molecules of more bonds are worked on one by one, trees in pieces.
+// Molecules of more bonds are worked on one by one, trees in tiles.
 constexpr int32_t largest_in_lanes = 2048;
 // Those with cycles gain nothing by lanes from fewer on: sparse LDL^T serves one of them as fast as lanes serve each of
 // four, and most are the only one of their kind.
 constexpr int32_t largest_graph_in_lanes = 256;
 // The most children of an atom of a ring with trees: chemical ones have no more. With others it is a graph.
 constexpr int32_t most_on_ring = 2;
-constexpr int32_t slots_of_piece = 2048;  // so many bonds at work fill a second-level cache
+constexpr int32_t slots_of_tile = 2048;  // so many bonds at work fill a second-level cache
 
 // Bonds of an arm: what is done once an arm is little beside what is done for its bonds, and these stay in cache. All
 // but one are a multiple of arm_step, so that segments in as many lanes are equally long.

@@ -55,10 +55,10 @@ struct LdlPlan {
     const int32_t *from, *to;  // [n_rows]
     // Off-diagonal entries of the factor, column by column: rows ascending, all > k in column k. The columns of a run
     // have as many entries each.
-    struct Run {
+    struct ColumnRun {
         int32_t columns, entries;
     };
-    const Run *run;
+    const ColumnRun *run;
     const int32_t *row;  // [n_entries] columns or sides
     // What an entry starts from, before fill: w d.d' with four times the number of its row and column, and the place of
     // the inverse mass of the atom that both share among -w_0, w_0, -w_1, .. , 0, by sign.

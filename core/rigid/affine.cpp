@@ -11,9 +11,10 @@ namespace holonomic::rigid {
 namespace {
 
 // Vectors over the atoms, which are made orthogonal by Gram and Schmidt's method, the longest one first.
-class Span {
+class Orthogonalization {
 public:
-    Span(const double *masses, std::size_t n, const DoublePair &mass) : masses_(masses), n_(n), mass_(mass) {}
+    Orthogonalization(const double *masses, std::size_t n, const DoublePair &mass)
+        : masses_(masses), n_(n), mass_(mass) {}
 
     using Vector = std::vector<DoublePair>;
     // To those that begin, which are not returned.
@@ -51,7 +52,7 @@ public:
     }
 
 private:
-    // What is shorter stands for atoms without mass alone, whose places nothing determines.
+    // What is shorter stands for atoms without mass alone, whose coordinates nothing determines.
     static constexpr double least = 1e-20;
 
     DoublePair product(const Vector &a, const Vector &b) const {
@@ -73,14 +74,14 @@ private:
 
 }  // namespace
 
-Body make_loose(const double *masses, const Relations &relations, double extent) {
+Body make_affine(const double *masses, const Relations &relations, double extent) {
     const std::int32_t n = relations.n_atoms;
     Body body;
     body.is_rigid = false;
     body.relations = relations;
     body.n_atoms = n;
     body.masses.assign(masses, masses + n);
-    body.place.assign(3 * at(n), 0);
+    body.coordinates.assign(3 * at(n), 0);
     body.n_massive = static_cast<std::int32_t>(std::count_if(masses, masses + n, [](double m) { return m > 0; }));
     if (body.n_massive == 0) throw BodyFault{BodyFault::no_mass, -1};
     DoublePair mass = as_pair(0);
@@ -94,15 +95,15 @@ Body make_loose(const double *masses, const Relations &relations, double extent)
     const Leaders leaders = leaders_of(relations, 1e-10);
     if (!leaders.left_out.empty()) throw BodyFault{BodyFault::twice, leaders.left_out[0]};
     const std::size_t count = leaders.atoms.size();
-    std::vector<Span::Vector> columns(count, Span::Vector(at(n)));
+    std::vector<Orthogonalization::Vector> columns(count, Orthogonalization::Vector(at(n)));
     for (std::size_t i = 0; i < at(n); ++i)
         for (std::size_t l = 0; l < count; ++l) columns[l][i] = leaders.of[i * count + l];
-    const Span span(masses, at(n), mass);
-    std::vector<Span::Vector> y{Span::Vector(at(n), as_pair(1))};
+    const Orthogonalization basis(masses, at(n), mass);
+    std::vector<Orthogonalization::Vector> y{Orthogonalization::Vector(at(n), as_pair(1))};
     const bool is_free = relations.n_fixed == 0;
     if (!is_free) y.clear();
     if (count == 0) throw BodyFault{BodyFault::held, -1};
-    for (Span::Vector &vector : span.orthonormal(std::move(columns), count - y.size(), y))
+    for (Orthogonalization::Vector &vector : basis.orthonormal(std::move(columns), count - y.size(), y))
         y.push_back(std::move(vector));
     if (y.size() < count) throw BodyFault{BodyFault::undetermined, -1};
     body.rank = static_cast<std::int32_t>(y.size()) - 1;
@@ -115,9 +116,9 @@ Body make_loose(const double *masses, const Relations &relations, double extent)
     const std::size_t n_fixed = at(relations.n_fixed);
     body.of_fixed.resize(at(n) * n_fixed);
     for (std::size_t j = 0; j < n_fixed; ++j) {
-        Span::Vector follows(at(n));
+        Orthogonalization::Vector follows(at(n));
         for (std::size_t i = 0; i < at(n); ++i) follows[i] = leaders.of_fixed[i * n_fixed + j];
-        follows = span.rest(std::move(follows), y);
+        follows = basis.rest(std::move(follows), y);
         for (std::size_t i = 0; i < at(n); ++i) body.of_fixed[i * n_fixed + j] = follows[i];
     }
     return body;

@@ -1,4 +1,4 @@
-#include "core/rigid/shape.hpp"
+#include "core/rigid/molecule_kind.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@ namespace holonomic::rigid {
 
 namespace {
 
-struct Row {
+struct EquationRow {
     std::vector<Entry> entries;
     std::int32_t bond;
     DoublePair target;
@@ -19,7 +19,7 @@ struct Row {
 
 class Completion {
 public:
-    Completion(Shape &shape, const std::vector<Body> &bodies) : s_(shape), bodies_(bodies) {}
+    Completion(MoleculeKind &kind, const std::vector<Body> &bodies) : s_(kind), bodies_(bodies) {}
 
     void run() {
         place_nodes();
@@ -68,8 +68,8 @@ private:
         const Body &body = body_of(part);
         double square = 0;
         for (int c = 0; c < 3; ++c) {
-            const double d =
-                body.place[at(3 * (bond.j - part.first_atom) + c)] - body.place[at(3 * (bond.i - part.first_atom) + c)];
+            const double d = body.coordinates[at(3 * (bond.j - part.first_atom) + c)] -
+                             body.coordinates[at(3 * (bond.i - part.first_atom) + c)];
             square += d * d;
         }
         if (!(std::fabs(std::sqrt(square) - bond.length) <= same_length * bond.length))
@@ -92,10 +92,11 @@ private:
 
     void add_distance(const Bond &bond, std::int32_t number) {
         if (is_off_plane(bond.i) || is_off_plane(bond.j)) throw Unsolvable{Unsolvable::off_plane, number};
-        Row row{{}, number, as_pair(bond.length) * as_pair(bond.length), bond.length * bond.length, bond.length};
+        EquationRow row{
+            {}, number, as_pair(bond.length) * as_pair(bond.length), bond.length * bond.length, bond.length};
         add_end(bond.j, 1, row.entries);
         add_end(bond.i, -1, row.entries);
-        if (are_of_one_part(bond)) {  // of a loose one: each node once
+        if (are_of_one_part(bond)) {  // of an affine one: each node once
             const std::size_t half = row.entries.size() / 2;
             for (std::size_t e = 0; e < half; ++e)
                 row.entries[e].factor = row.entries[e].factor + row.entries[half + e].factor;
@@ -126,11 +127,11 @@ private:
             const std::int32_t u = part.first_node + 1;
             for (std::int32_t p = 0; p < body.rank; ++p)
                 for (std::int32_t q = p; q < body.rank; ++q) {
-                    Row row{{{u + p, u + q, as_pair(1)}},
-                            -1,
-                            p == q ? body.square[p] : as_pair(0),
-                            body.length[p] * body.length[q],
-                            body.length[p] + body.length[q]};
+                    EquationRow row{{{u + p, u + q, as_pair(1)}},
+                                    -1,
+                                    p == q ? body.square[p] : as_pair(0),
+                                    body.length[p] * body.length[q],
+                                    body.length[p] + body.length[q]};
                     if (p != q) row.entries.push_back({u + q, u + p, as_pair(1)});
                     rows_.push_back(std::move(row));
                 }
@@ -162,7 +163,8 @@ private:
                 found.push_back(part.first_atom + step.atom);
                 double square = 0;
                 for (int c = 0; c < 3; ++c) {
-                    const double d = body.place[at(3 * step.atom + c)] - body.place[at(3 * step.before + c)];
+                    const double d =
+                        body.coordinates[at(3 * step.atom + c)] - body.coordinates[at(3 * step.before + c)];
                     square += d * d;
                 }
                 s_.longest = std::max(s_.longest, std::sqrt(square));
@@ -223,7 +225,7 @@ private:
     void write_rows(const std::vector<std::int32_t> &order) {
         s_.entry_start.push_back(0);
         for (std::size_t k = 0; k < order.size(); ++k) {
-            const Row &row = rows_[at(order[k])];
+            const EquationRow &row = rows_[at(order[k])];
             s_.entries.insert(s_.entries.end(), row.entries.begin(), row.entries.end());
             s_.entry_start.push_back(static_cast<std::int32_t>(s_.entries.size()));
             s_.bond_of_row.push_back(row.bond);
@@ -235,17 +237,17 @@ private:
     }
 
     void find_products() {
-        struct Place {
+        struct Occurrence {
             std::int32_t entry, row;
         };
-        std::vector<std::vector<Place>> of_node(at(s_.n_nodes));
+        std::vector<std::vector<Occurrence>> of_node(at(s_.n_nodes));
         for (std::int32_t k = 0; k < s_.n_rows; ++k)
             for (std::int32_t e = s_.entry_start[at(k)]; e < s_.entry_start[at(k + 1)]; ++e)
                 if (s_.w[at(s_.entries[at(e)].node)] > 0) of_node[at(s_.entries[at(e)].node)].push_back({e, k});
-        for (const auto &places : of_node)
-            for (std::size_t a = 0; a < places.size(); ++a)
-                for (std::size_t b = a; b < places.size(); ++b) {
-                    const Place first = places[a], second = places[b];  // rows ascend
+        for (const auto &occurrences : of_node)
+            for (std::size_t a = 0; a < occurrences.size(); ++a)
+                for (std::size_t b = a; b < occurrences.size(); ++b) {
+                    const Occurrence first = occurrences[a], second = occurrences[b];  // rows ascend
                     if (first.row == second.row) {
                         s_.products.push_back({first.entry, second.entry, first.row, a == b ? 1 : 2});
                         continue;
@@ -258,9 +260,9 @@ private:
                 }
     }
 
-    Shape &s_;
+    MoleculeKind &s_;
     const std::vector<Body> &bodies_;
-    std::vector<Row> rows_;
+    std::vector<EquationRow> rows_;
 };
 
 }  // namespace
@@ -272,41 +274,40 @@ constexpr double most_length = 0x1p80, most_mass = 0x1p150;
 
 bool is_between(double a, double most) { return a > 1 / most && a < most; }
 
-bool is_in_range(const Shape &shape, const std::vector<Body> &bodies) {
+bool is_in_range(const MoleculeKind &kind, const std::vector<Body> &bodies) {
     bool good = true;
-    for (const Part &part : shape.parts) {
+    for (const Part &part : kind.parts) {
         const Body &body = bodies[static_cast<std::size_t>(part.body)];
         good = good && is_between(body.mass, most_mass) && is_between(body.extent, most_length);
     }
-    for (const double mass : shape.mass) good = good && (mass == 0 || is_between(mass, most_mass));
-    for (const Bond &bond : shape.bonds) good = good && is_between(bond.length, most_length);
+    for (const double mass : kind.mass) good = good && (mass == 0 || is_between(mass, most_mass));
+    for (const Bond &bond : kind.bonds) good = good && is_between(bond.length, most_length);
     return good;
 }
 
 }  // namespace
 
-void complete(Shape &shape, const std::vector<Body> &bodies) {
-    Completion(shape, bodies).run();
-    shape.is_ordinary = is_in_range(shape, bodies);
-    shape.is_lone_body =
-        shape.is_ordinary && shape.parts.size() == 1 && shape.n_atoms == shape.n_held &&
-        std::all_of(shape.bonds.begin(), shape.bonds.end(), [](const Bond &bond) { return bond.row < 0; }) &&
-        bodies[static_cast<std::size_t>(shape.parts[0].body)].is_thick;
+void complete(MoleculeKind &kind, const std::vector<Body> &bodies) {
+    Completion(kind, bodies).run();
+    kind.is_ordinary = is_in_range(kind, bodies);
+    kind.is_lone_body =
+        kind.is_ordinary && kind.parts.size() == 1 && kind.n_atoms == kind.n_held &&
+        std::all_of(kind.bonds.begin(), kind.bonds.end(), [](const Bond &bond) { return bond.row < 0; }) &&
+        bodies[static_cast<std::size_t>(kind.parts[0].body)].is_thick;
     // A rigid whole has three or six motions left unless a fixed atom holds it, one that goes round the box three: more
     // equations than freedoms depend.
-    std::int64_t freedoms = 3 * (shape.n_movable - shape.n_held), rows = 0;
-    for (const Part &part : shape.parts) {
+    std::int64_t freedoms = 3 * (kind.n_movable - kind.n_held), rows = 0;
+    for (const Part &part : kind.parts) {
         const Body &body = bodies[static_cast<std::size_t>(part.body)];
         freedoms += !body.is_rigid ? 3 * (1 + body.rank) : body.rank == 1 ? 5 : 6;
     }
-    for (const Bond &bond : shape.bonds) rows += bond.row >= 0;
-    rows += static_cast<std::int64_t>(shape.hidden.size());
-    const bool free = shape.n_atoms == shape.n_movable;
-    if (rows > 0 && rows > freedoms - (!free ? 0 : shape.has_images ? 3 : 5))
-        throw Unsolvable{Unsolvable::too_many, -1};
+    for (const Bond &bond : kind.bonds) rows += bond.row >= 0;
+    rows += static_cast<std::int64_t>(kind.hidden.size());
+    const bool free = kind.n_atoms == kind.n_movable;
+    if (rows > 0 && rows > freedoms - (!free ? 0 : kind.has_images ? 3 : 5)) throw Unsolvable{Unsolvable::too_many, -1};
 }
 
-std::int64_t Shape::bytes() const {
+std::int64_t MoleculeKind::bytes() const {
     return static_cast<std::int64_t>(
         signature.capacity() * sizeof(double) + entries.capacity() * sizeof(Entry) +
         products.capacity() * sizeof(Product) + bonds.capacity() * sizeof(Bond) + steps.capacity() * sizeof(Step) +

@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-#include "core/kernels/molecules/network/front_plan.hpp"
+#include "core/plan/fronts.hpp"
 
 namespace holonomic {
 

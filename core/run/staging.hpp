@@ -11,13 +11,13 @@
 
 namespace holonomic {
 
-class Apart {
+class Staging {
 public:
     // Takes memory of the calling thread for all arrays that a call may have: four per atom, and four per bond beside
     // one of `wide` values for each. Networks have a list of their bonds instead where nothing is wide and no other
     // molecule needs copies. Throws std::bad_alloc.
-    explicit Apart(const Chains &chains, int wide = 0) : Apart(chains, chains.plan(), wide) {}
-    Apart(const Chains &chains, const Plan &plan, int wide = 0)
+    explicit Staging(const Chains &chains, int wide = 0) : Staging(chains, chains.plan(), wide) {}
+    Staging(const Chains &chains, const Plan &plan, int wide = 0)
         : chains_(chains), plan_(plan), reorders_(wide > 0 ? plan.reordered : plan.copied) {
         if (reorders() || stages()) take_memory(wide);
     }
@@ -78,8 +78,8 @@ class Variants {
 public:
     // `values` and `atoms` replace a variant's arrays. Variants that no molecule needs are not made.
     template <class Values, class Atoms>
-    Variants(const Call &call, const Apart &apart, Values values, Atoms atoms)
-        : call_(call), made_of_((apart.reorders() ? reordered : 0) | (apart.stages() ? staged : 0)) {
+    Variants(const Call &call, const Staging &staging, Values values, Atoms atoms)
+        : call_(call), made_of_((staging.reorders() ? reordered : 0) | (staging.stages() ? staged : 0)) {
         for (int where = 1; where < n_wheres; ++where) {
             if ((where & made_of_) != where) continue;
             new (&made_[where - 1]) Call(call);

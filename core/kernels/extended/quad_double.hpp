@@ -9,15 +9,15 @@
 namespace holonomic::HOL_ISA {
 
 // Each word is at most half a unit in the last place of the one before, and zeros come last.
-struct Four {
+struct QuadDouble {
     double hi, second, third, fourth;
-    Four() = default;
-    Four(double a, double b, double c, double d) : hi(a), second(b), third(c), fourth(d) {}
-    Four(const Pair<double> &a) : hi(a.hi), second(a.lo), third(0), fourth(0) {}  // |lo| is a rounding of hi
+    QuadDouble() = default;
+    QuadDouble(double a, double b, double c, double d) : hi(a), second(b), third(c), fourth(d) {}
+    QuadDouble(const Pair<double> &a) : hi(a.hi), second(a.lo), third(0), fourth(0) {}  // |lo| is a rounding of hi
 };
 
 // Returns the sum of x[0 .. n), n > 4, largest first or nearly so; x is overwritten.
-HOL_NOINLINE Four sum_of(double *x, int n) {
+HOL_NOINLINE QuadDouble sum_of(double *x, int n) {
     for (int word = 0; word < 4; ++word)
         for (int i = n - 1; i > word; --i) {
             const Pair<double> s = two_sum<double>(x[i - 1], x[i]);
@@ -39,30 +39,30 @@ HOL_NOINLINE Four sum_of(double *x, int n) {
     return {words[0], words[1], words[2], words[3]};
 }
 
-HOL_INLINE Four as_four(double a) { return {a, 0, 0, 0}; }
-HOL_INLINE double rounded(const Four &a) { return a.hi + a.second; }
+HOL_INLINE QuadDouble as_quad_double(double a) { return {a, 0, 0, 0}; }
+HOL_INLINE double rounded(const QuadDouble &a) { return a.hi + a.second; }
 // What its first word leaves of a number.
-HOL_INLINE double beyond_first(const Four &a) { return a.second; }
-HOL_INLINE Four over(const Four &a, double power_of_two) {
+HOL_INLINE double beyond_first(const QuadDouble &a) { return a.second; }
+HOL_INLINE QuadDouble over(const QuadDouble &a, double power_of_two) {
     return {a.hi / power_of_two, a.second / power_of_two, a.third / power_of_two, a.fourth / power_of_two};
 }
 
-HOL_INLINE Four operator-(const Four &a) { return {-a.hi, -a.second, -a.third, -a.fourth}; }
+HOL_INLINE QuadDouble operator-(const QuadDouble &a) { return {-a.hi, -a.second, -a.third, -a.fourth}; }
 
-HOL_NOINLINE Four operator+(const Four &a, const Four &b) {
+HOL_NOINLINE QuadDouble operator+(const QuadDouble &a, const QuadDouble &b) {
     double x[8] = {a.hi, b.hi, a.second, b.second, a.third, b.third, a.fourth, b.fourth};
     return sum_of(x, 8);
 }
 
-HOL_INLINE Four operator-(const Four &a, const Four &b) { return a + -b; }
+HOL_INLINE QuadDouble operator-(const QuadDouble &a, const QuadDouble &b) { return a + -b; }
 
-HOL_NOINLINE Four operator*(double a, const Four &b) {
+HOL_NOINLINE QuadDouble operator*(double a, const QuadDouble &b) {
     const Pair<double> p0 = two_product(a, b.hi), p1 = two_product(a, b.second), p2 = two_product(a, b.third);
     double x[7] = {p0.hi, p0.lo, p1.hi, p1.lo, p2.hi, p2.lo, a * b.fourth};
     return sum_of(x, 7);
 }
 
-HOL_NOINLINE Four operator*(const Four &a, const Four &b) {
+HOL_NOINLINE QuadDouble operator*(const QuadDouble &a, const QuadDouble &b) {
     const Pair<double> p00 = two_product(a.hi, b.hi), p01 = two_product(a.hi, b.second),
                        p10 = two_product(a.second, b.hi), p02 = two_product(a.hi, b.third),
                        p11 = two_product(a.second, b.second), p20 = two_product(a.third, b.hi);
@@ -72,9 +72,9 @@ HOL_NOINLINE Four operator*(const Four &a, const Four &b) {
     return sum_of(x, 10);
 }
 
-HOL_NOINLINE Four operator/(const Four &a, const Four &b) {
+HOL_NOINLINE QuadDouble operator/(const QuadDouble &a, const QuadDouble &b) {
     double x[5];
-    Four rest = a;
+    QuadDouble rest = a;
     for (double &word : x) {
         word = rest.hi / b.hi;
         rest = rest - word * b;
@@ -82,11 +82,11 @@ HOL_NOINLINE Four operator/(const Four &a, const Four &b) {
     return sum_of(x, 5);
 }
 
-HOL_INLINE Four abs(const Four &a) { return a.hi < 0 ? -a : a; }
-HOL_INLINE bool less(const Four &a, const Four &b) { return (a - b).hi < 0; }
+HOL_INLINE QuadDouble abs(const QuadDouble &a) { return a.hi < 0 ? -a : a; }
+HOL_INLINE bool less(const QuadDouble &a, const QuadDouble &b) { return (a - b).hi < 0; }
 
-HOL_NOINLINE Four square_root(const Four &a) {  // a > 0
-    Four s = as_four(__builtin_sqrt(a.hi));
+HOL_NOINLINE QuadDouble square_root(const QuadDouble &a) {  // a > 0
+    QuadDouble s = as_quad_double(__builtin_sqrt(a.hi));
     for (int step = 0; step < 2; ++step) s = s + 0.5 * ((a - s * s) / s);
     return s;
 }

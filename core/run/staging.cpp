@@ -1,4 +1,4 @@
-#include "core/run/apart.hpp"
+#include "core/run/staging.hpp"
 
 #include <cstring>
 #include <new>
@@ -54,16 +54,16 @@ void for_values(const std::vector<std::int64_t> &places, std::int64_t width, Eac
 
 }  // namespace
 
-void Apart::take_memory(int wide) {
+void Staging::take_memory(int wide) {
     const std::int64_t n_stage = static_cast<std::int64_t>(plan_.stage.size());
     const std::int64_t n_values = reorders() ? static_cast<std::int64_t>(chains_.reordered_bonds().size()) : 0;
     const std::int64_t bytes =
         most * (rounded_up(n_stage * 24) + rounded_up(n_values * 8)) + rounded_up(n_values * 8 * wide);
-    memory_ = static_cast<char *>(thread_memory(Keep::apart, bytes));
+    memory_ = static_cast<char *>(thread_memory(Keep::staging, bytes));
     if (!memory_) throw std::bad_alloc();
 }
 
-Apart::Values &Apart::copy_of(const double *callers, int width) {
+Staging::Values &Staging::copy_of(const double *callers, int width) {
     for (int i = 0; i < n_values_; ++i)
         if (values_[i].callers == callers) return values_[i];
     const std::vector<std::int64_t> &places = chains_.reordered_bonds();
@@ -74,16 +74,16 @@ Apart::Values &Apart::copy_of(const double *callers, int width) {
     return values_[n_values_++];
 }
 
-double *Apart::results(double *callers, int width) {
+double *Staging::results(double *callers, int width) {
     if (!callers) return nullptr;
     Values &values = copy_of(callers, width);
     values.result = callers;
     return values.copy;
 }
 
-const double *Apart::inputs(const double *callers) { return callers ? copy_of(callers, 1).copy : nullptr; }
+const double *Staging::inputs(const double *callers) { return callers ? copy_of(callers, 1).copy : nullptr; }
 
-AtomArray Apart::stage(const AtomArray &callers, Use use) {
+AtomArray Staging::stage(const AtomArray &callers, Use use) {
     if (!callers.x) return callers;
     for (int i = 0; i < n_atoms_; ++i)
         if (atoms_[i].callers.x == callers.x && atoms_[i].use == use) return atoms_[i].copy;
@@ -102,14 +102,14 @@ AtomArray Apart::stage(const AtomArray &callers, Use use) {
     return copy;
 }
 
-AtomArray Apart::atoms(const AtomArray &callers) { return stage(callers, Use::read); }
-AtomArray Apart::moved_atoms(const AtomArray &callers) { return stage(callers, Use::moved); }
-AtomArray Apart::summed_atoms(const AtomArray &callers, bool add) {
+AtomArray Staging::atoms(const AtomArray &callers) { return stage(callers, Use::read); }
+AtomArray Staging::moved_atoms(const AtomArray &callers) { return stage(callers, Use::moved); }
+AtomArray Staging::summed_atoms(const AtomArray &callers, bool add) {
     return stage(callers, add ? Use::added : Use::written);
 }
 
 // The copies of a shared atom stand next to each other in the plan, in the order of the molecules.
-void Apart::sum_copies(const Atoms &atoms) const {
+void Staging::sum_copies(const Atoms &atoms) const {
     for (std::size_t first = 0, end; first < plan_.copies.size(); first = end) {
         const std::int64_t atom = plan_.copies[first].atom;
         double sum[3] = {0, 0, 0};
@@ -129,14 +129,14 @@ void Apart::sum_copies(const Atoms &atoms) const {
     }
 }
 
-void Apart::put_back(const Atoms &atoms) const {
+void Staging::put_back(const Atoms &atoms) const {
     if (atoms.use == Use::read) return;
     for (std::size_t i = 0; i < plan_.stage.size(); ++i)
         if (!plan_.is_copy[i]) copy_atom(atoms.copy, static_cast<std::int64_t>(i), atoms.callers, plan_.stage[i]);
     if (atoms.use != Use::moved) sum_copies(atoms);
 }
 
-void Apart::put_all_back() const {
+void Staging::put_all_back() const {
     const std::vector<std::int64_t> &places = chains_.reordered_bonds();
     for (int i = 0; i < n_values_; ++i) {
         double *const result = values_[i].result;

@@ -1,4 +1,4 @@
-// The remainder E: its recursion, how far it may be trusted, and products of nearly orthogonal bonds.
+// E, the effective inverse mass: its recursion, how far it may be trusted, and products of nearly orthogonal bonds.
 #pragma once
 
 #include "core/kernels/arithmetic/image.hpp"
@@ -64,7 +64,7 @@ HOL_NOINLINE vec exact_dots(const Where &source, long k, mask which, vec g) {
 // Both may be scaled by one factor at any time, so no division has to wait for another. A chain has one column. A
 // segment has two with the same coefficients: its own, and that of its separator, (a, c). Newton's matrix is not
 // symmetric; there q and X are products of old and new bonds.
-struct Column {
+struct Fraction {
     vec A, F;
     HOL_FORCED vec next(vec wq) const { return mul_add(wq, F, A); }  // F'; the pivot P is F' / F
     HOL_FORCED void pass(vec F1, vec wwX, vec wq1) {
@@ -74,12 +74,12 @@ struct Column {
 };
 
 // The cheap tests of doubt look at this: it is negative where E < P / (1 + times). P = F' / F.
-HOL_INLINE vec spare(const Column &e, vec F1, double times) { return mul_sub(splat(1 + times), e.A, F1); }
+HOL_INLINE vec spare(const Fraction &e, vec F1, double times) { return mul_sub(splat(1 + times), e.A, F1); }
 
 // How X = |d x d'|^2 is found. It enters E' = w (q' E + w X) / P, and E decides how much its error harms E'. With
 // e = E / (w q),
 //  - q q' - g^2 has an error of a few roundings of q q', and E' gets a few / (e + sin^2). That is harmless in ordinary
-//    chains, where e >= least_remainder but in a row of nearly parallel bonds;
+//    chains, where e >= least_effective_mass but in a row of nearly parallel bonds;
 //  - the cross product has a relative error of about 2 eps |d| |d'| / sqrt X from the rounding of d and d', which is
 //    harmless where w sqrt(X q q') <= c (q' E + w X), c = joint_tolerance. This holds for every X if e >= 1 / (4 c^2);
 //  - else the chain needs compensated products of the unrounded bond vectors.
@@ -87,7 +87,7 @@ HOL_INLINE vec spare(const Column &e, vec F1, double times) { return mul_sub(spl
 // (docs/development/measurements.md).
 
 // Exact form of the test, for the joints between the n + 1 bonds from D on. Joint i is at atom first + i; E is the
-// remainder before D[0].
+// E before D[0].
 template <bool uniform>
 HOL_NOINLINE mask flagged_joints(const Block &block, const vec3 *D, long first, long n, vec E) {
     mask flag = none();

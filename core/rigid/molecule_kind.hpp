@@ -20,10 +20,11 @@ struct Part {
     std::vector<std::int32_t> fixed;  // atoms that its relations have
 };
 
-// A bond's length and the distance between its atoms in a body that was given by places: equal to what digits allow.
+// A bond's length and the distance between its atoms in a body that was given by coordinates: equal to what digits
+// allow.
 constexpr double same_length = 1e-6;
 
-// Row of a bond that is none, as a loose part holds it by other distances.
+// Row of a bond that is none, as an affine part holds it by other distances.
 constexpr std::int32_t held_elsewhere = -2;
 
 // A bond as it was given, of atoms numbered within the molecule.
@@ -39,15 +40,15 @@ struct Entry {
     DoublePair factor;
 };
 
-// What two entries at a node add to the matrix: at `place` of the diagonal (same row), or of the factor's pattern.
+// What two entries at a node add to the matrix: at `element` of the diagonal (same row), or of the factor's pattern.
 struct Product {
     std::int32_t a, b;  // entries, of the row eliminated first and of the other
-    std::int32_t place;
+    std::int32_t element;
     std::int32_t of_diagonal;
 };
 
-struct Shape {
-    std::vector<double> signature;  // what makes two molecules of one shape, word by word
+struct MoleculeKind {
+    std::vector<double> signature;  // what makes two molecules of one kind, word by word
     std::int32_t n_atoms = 0;       // bodies' atoms, others that can move, fixed ones
     std::int32_t n_held = 0;        // atoms of bodies
     std::int32_t n_movable = 0;     // and others that can move
@@ -88,6 +89,6 @@ struct Unsolvable {
     enum Cause { length_in_body, off_plane, unconnected, too_many } cause;
     std::int32_t bond;
 };
-void complete(Shape &shape, const std::vector<Body> &bodies);
+void complete(MoleculeKind &kind, const std::vector<Body> &bodies);
 
 }  // namespace holonomic::rigid
