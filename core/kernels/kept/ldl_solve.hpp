@@ -2,13 +2,15 @@
 // which are those of the molecules in the lanes of F, or several of one molecule.
 #pragma once
 
+#include <type_traits>
+
 #include "core/kernels/kept/ldl_factor.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 
 template <class V, class F>
 HOL_INLINE V spread(const F &a) {
-    if constexpr (Width<F>::lanes == Width<V>::lanes)
+    if constexpr (std::is_same_v<F, V>)
         return a;
     else
         return Width<V>::all(a);
