@@ -278,7 +278,8 @@ int main(int argc, char **argv)
         constrain(velocities, step);
         constrain_left(left);
         memcpy(r_ref, r, sizeof r); /* the same on the host */
-        for (int k = 0; k < 3 * ATOMS; ++k) r[0][k] += dt * v[0][k];
+        for (int a = 0; a < ATOMS; ++a)
+            for (int axis = 0; axis < 3; ++axis) r[a][axis] += dt * v[a][axis];
         ok(hol_project_positions(chains, r_ref[0], r[0], v[0], dt, NULL, 0, NULL, NULL));
         ok(hol_project_velocities(chains, r[0], v[0], NULL, NULL));
     }
@@ -286,7 +287,8 @@ int main(int argc, char **argv)
     static double found[ATOMS][3];
     double apart = 0;
     copy(d_r, found[0], 0);
-    for (int k = 0; k < 3 * ATOMS; ++k) apart = fmax(apart, fabs(found[0][k] - r[0][k]));
+    for (int a = 0; a < ATOMS; ++a)
+        for (int axis = 0; axis < 3; ++axis) apart = fmax(apart, fabs(found[a][axis] - r[a][axis]));
     printf("%s: %d launches, %d molecules left to the host\n", names[precision], n_launches, (int)n_left);
     printf("worst bond on the device %.1e, on the host %.1e; positions differ by %.1e\n", worst_bond(found),
            worst_bond(r), apart);
