@@ -34,8 +34,7 @@ std::vector<int> numbered_outwards(int n_atoms, const Pairs &bonds) {
     number[at(order[0])] = 0;
     for (std::size_t next = 0; next < order.size(); ++next) {
         std::vector<int> beyond = near[at(order[next])];
-        std::sort(beyond.begin(), beyond.end());
-        std::stable_sort(beyond.begin(), beyond.end(), more);
+        std::sort(beyond.begin(), beyond.end(), [&](int a, int b) { return more(a, b) || (!more(b, a) && a < b); });
         for (const int atom : beyond)
             if (number[at(atom)] < 0) {
                 number[at(atom)] = static_cast<int>(order.size());
@@ -121,9 +120,10 @@ const Arrangement *Sorter::make(int n_atoms, const Pairs &ends) {
 }
 
 Sorted Sorter::finished() {
-    std::stable_sort(sorted_.kinds.begin(), sorted_.kinds.end(), [](const Sorted::OfKind &a, const Sorted::OfKind &b) {
+    std::sort(sorted_.kinds.begin(), sorted_.kinds.end(), [](const Sorted::OfKind &a, const Sorted::OfKind &b) {
         if (a.kind.is_for_group() != b.kind.is_for_group()) return b.kind.is_for_group();
-        return a.kind.n_bonds() > b.kind.n_bonds();
+        if (a.kind.n_bonds() != b.kind.n_bonds()) return a.kind.n_bonds() > b.kind.n_bonds();
+        return a.kind < b.kind;
     });
     return std::move(sorted_);
 }

@@ -52,6 +52,7 @@ double *Factors::room(void *owner, std::int64_t molecule, std::int64_t doubles) 
                 f.end_ = f.chunks_.back() + more;
             }
         } catch (const std::bad_alloc &) {
+            f.out_of_memory_ = true;  // kernels throw nothing
             return nullptr;
         }
         block = {f.end_ - f.free_, whole};
@@ -77,6 +78,7 @@ void Factors::begin() {
     left_.assign(n, 0);
     r_.resize(at(3 * chains_.n_atoms()));
     kept_ = {this, room, block_.data(), positions(), &box_};
+    out_of_memory_ = false;
 }
 
 // The set with those molecules alone that have one of these marks, and those with bodies.
@@ -110,12 +112,13 @@ void Factors::update(const AtomArray &r) {
         for (std::int64_t m = 0; m < chains_.n_chains(); ++m) left_[at(m)] = chains_.is_active(m);
     else
         keep(chains_, call);
-    revision_ = chains_.revision();
+    if (out_of_memory_) throw std::bad_alloc();
     rest_.reset();
     rest_of_forces_.reset();
     if (std::memchr(left_.data(), left_of_forces, left_.size())) rest_of_forces_ = those(left_.data(), any_mark);
-    if (!chains_.bodies() && !std::memchr(left_.data(), 1, left_.size())) return;
-    rest_ = those(left_.data(), 1);
+    if (chains_.bodies() || std::memchr(left_.data(), 1, left_.size())) rest_ = those(left_.data(), 1);
+    revision_ = chains_.revision();
+    if (!rest_) return;
     ForcesCall look{};  // finds what is bad
     look.r = positions();
     holonomic::forces(*rest_, look, nullptr);

@@ -69,6 +69,7 @@ private:
     std::vector<double *> chunks_;       // memory of the blocks
     std::int64_t free_ = 0;              // doubles of the last one, in front of its end
     double *end_ = nullptr;
+    bool out_of_memory_ = false;  // for a block of the last update
     KeptFactors kept_{};
     std::vector<unsigned char> left_;  // [n_molecules] not kept
     // These of given right-hand sides, and of forces where that is more; or null: there are none.

@@ -145,6 +145,33 @@ static int inverse_bound(const assembly *a, double *out)
     return hol_inverse_error_bound(prepared, a->v, a->f, a->length, per_bond(a, out), numbers(a, out));
 }
 
+/* Forces, or right-hand sides, by factors that are made for them. */
+static int kept(const assembly *a, double *out, int sides)
+{
+    hol_factors *made = (hol_factors *)out;
+    int status = hol_factors_create(a->chains, &made);
+    if (status != HOL_OK) {
+        if (made != NULL) return HOL_ERR_INTERNAL; /* "NULL on an error" */
+        return status;
+    }
+    double *const o = per_bond(a, out);
+    status = hol_factors_update(made, a->r);
+    if (status == HOL_OK && sides)
+        status = hol_factors_solve(made, 1, a->length, o, out, HOL_WRITE, numbers(a, out));
+    else if (status == HOL_OK)
+        status = hol_factors_forces(made, a->v, a->f, o, o + bonds(a), out, HOL_WRITE, numbers(a, out));
+    hol_factors_destroy(made);
+    return status;
+}
+static int kept_forces(const assembly *a, double *out)
+{
+    return kept(a, out, 0);
+}
+static int kept_solve(const assembly *a, double *out)
+{
+    return kept(a, out, 1);
+}
+
 static double gamma_of(size_t k)
 {
     return 0.3 + 0.1 * (double)(k % 2);
@@ -198,27 +225,29 @@ static int partition(const assembly *a, double *out)
 }
 
 const operation operations[] = {
-    {"hol_forces", forces},
-    {"hol_project_velocities", velocities},
-    {"hol_project_positions", positions},
-    {"hol_project_positions_along", positions_along},
-    {"hol_chains_check", check},
-    {"hol_violation", violation},
-    {"hol_solve", given_right_hand_sides},
-    {"hol_reactions", reactions},
-    {"hol_forces with a rate", forces_in_motion},
-    {"hol_project_velocities with a rate", velocities_in_motion},
-    {"hol_metric", metric},
-    {"hol_inverse_create", inverse},
-    {"hol_inverse_row", inverse_row},
-    {"hol_inverse_band", inverse_band},
-    {"hol_inverse_error_bound", inverse_bound},
-    {"hol_tridiagonal_pivots", pivots},
-    {"hol_tridiagonal_log_det", log_det},
-    {"hol_tridiagonal_solve", solve},
-    {"hol_tridiagonal_inverse_entry", entry},
-    {"hol_tridiagonal_inverse_band", band},
-    {"hol_partition_function", partition},
+    {"hol_forces", forces, 0},
+    {"hol_project_velocities", velocities, 0},
+    {"hol_project_positions", positions, 0},
+    {"hol_project_positions_along", positions_along, 0},
+    {"hol_chains_check", check, 0},
+    {"hol_violation", violation, 0},
+    {"hol_solve", given_right_hand_sides, 0},
+    {"hol_reactions", reactions, 0},
+    {"hol_forces with a rate", forces_in_motion, 0},
+    {"hol_project_velocities with a rate", velocities_in_motion, 0},
+    {"hol_metric", metric, 0},
+    {"hol_inverse_create", inverse, 0},
+    {"hol_inverse_row", inverse_row, 0},
+    {"hol_inverse_band", inverse_band, 0},
+    {"hol_inverse_error_bound", inverse_bound, 0},
+    {"hol_factors_forces", kept_forces, 1},
+    {"hol_factors_solve", kept_solve, 1},
+    {"hol_tridiagonal_pivots", pivots, 0},
+    {"hol_tridiagonal_log_det", log_det, 0},
+    {"hol_tridiagonal_solve", solve, 0},
+    {"hol_tridiagonal_inverse_entry", entry, 0},
+    {"hol_tridiagonal_inverse_band", band, 0},
+    {"hol_partition_function", partition, 0},
 };
 
 const size_t n_operations = sizeof operations / sizeof *operations;

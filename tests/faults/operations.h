@@ -8,6 +8,7 @@
 typedef struct operation {
     const char *name;
     int (*call)(const assembly *a, double *out);
+    int plans; /**< analyses molecules anew, where sorting does without the memory that it can't have */
 } operation;
 
 extern const operation operations[];

@@ -64,6 +64,10 @@ static long fail_each(const operation *what, const assembly *a, int once)
         assert_int_equal(t.second, HOL_OK);
         assert_same_bits(again, right, size);
         if (t.refused == 0) break;
+        if (t.status == HOL_OK && what->plans) {
+            assert_same_bits(out, right, size);
+            continue;
+        }
         if (t.status != HOL_ERR_MEMORY)
             fail_msg("%s: %s after allocation %ld failed", what->name, hol_status_name(t.status), t.good);
         assert_same_bits(out, before, size);
@@ -183,7 +187,7 @@ static void every_allocation_of_a_calculation_can_fail(void **state)
 static void the_first_calculation_with_a_handle_can_fail(void **state)
 {
     (void)state;
-    static const operation calls[] = {{"hol_forces", forces}, {"hol_solve", given_right_hand_sides}};
+    static const operation calls[] = {{"hol_forces", forces, 0}, {"hol_solve", given_right_hand_sides, 0}};
     for (int i = 0; i < 4; ++i) {
         assembly a = i < 2 ? assembly_of_kind(CHAIN_HETEROGENEOUS, 20, 1, 30, SCATTERED, 6) : molecules();
         const operation *what = calls + i % 2;
