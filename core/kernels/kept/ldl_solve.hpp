@@ -2,18 +2,21 @@
 // which are those of the molecules in the lanes of F, or several of one molecule.
 #pragma once
 
-#include <type_traits>
-
 #include "core/kernels/kept/ldl_factor.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 
 template <class V, class F>
+struct Broadcast {
+    HOL_STATIC V of(const F &a) { return Width<V>::all(a); }
+};
+template <class V>
+struct Broadcast<V, V> {
+    HOL_STATIC V of(const V &a) { return a; }
+};
+template <class V, class F>
 HOL_INLINE V spread(const F &a) {
-    if constexpr (std::is_same_v<F, V>)
-        return a;
-    else
-        return Width<V>::all(a);
+    return Broadcast<V, F>::of(a);
 }
 template <class V, class F>
 HOL_INLINE Pair<V> spread(const Pair<F> &a) {
