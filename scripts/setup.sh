@@ -9,6 +9,7 @@
 #   few_instruction_sets    for HOLONOMIC_INSTRUCTION_SETS where a build is slow and what it is for needs no others: four
 #                           lanes and one, the same whatever processor this is
 #   own_instruction_sets    prints those that this processor runs, the one that it takes last; all where that is not known
+#   baseline_needed         prints ON where the kernels of every processor are needed beside own_instruction_sets, else OFF
 #   test_tools              what scripts/test wants beside what it needs
 #
 # HOLONOMIC_WITHOUT (environment): names that `want` goes without; for a look at what is done where they can't be had.
@@ -38,6 +39,10 @@ own_instruction_sets() {
     case $flags in *' avx512f '*' avx512vl '*) sets="$sets;avx512vl" ;; esac
     if [ "$flags" = "  " ]; then sets="scalar;avx2;avx512vl"; fi
     echo "${sets#;}"
+}
+
+baseline_needed() {
+    if [ -n "$(own_instruction_sets)" ] && grep -q '^flags' /proc/cpuinfo 2>/dev/null; then echo OFF; else echo ON; fi
 }
 
 build_jobs() {

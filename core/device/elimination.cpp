@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/index.hpp"
+#include "core/molecules/given/lists.hpp"
 
 namespace holonomic::device {
 
@@ -16,12 +17,14 @@ using Pairs = std::vector<std::pair<int, int>>;
 using Neighbours = std::vector<std::vector<int>>;  // of each bond, ascending
 
 Neighbours bonds_that_share_atoms(int n_atoms, const Pairs &bonds) {
-    Neighbours bonds_at(at(n_atoms)), near(bonds.size());
-    for (int k = 0; k < static_cast<int>(bonds.size()); ++k)
-        for (const int atom : {bonds[at(k)].first, bonds[at(k)].second}) bonds_at[at(atom)].push_back(k);
-    for (int k = 0; k < static_cast<int>(bonds.size()); ++k) {
-        const auto &one = bonds_at[at(bonds[at(k)].first)], &other = bonds_at[at(bonds[at(k)].second)];
-        std::set_union(one.begin(), one.end(), other.begin(), other.end(), std::back_inserter(near[at(k)]));
+    const int n = static_cast<int>(bonds.size());
+    const Lists bonds_at =
+        invert(n_atoms, n, [&](int k, int end) { return end == 0 ? bonds[at(k)].first : bonds[at(k)].second; });
+    Neighbours near(bonds.size());
+    for (int k = 0; k < n; ++k) {
+        const int one = bonds[at(k)].first, other = bonds[at(k)].second;
+        std::set_union(bonds_at.begin(one), bonds_at.end(one), bonds_at.begin(other), bonds_at.end(other),
+                       std::back_inserter(near[at(k)]));
         near[at(k)].erase(std::lower_bound(near[at(k)].begin(), near[at(k)].end(), k));
     }
     return near;
@@ -127,8 +130,8 @@ std::vector<int> eliminate_by_levels(KernelKind &kind) {
     std::vector<int> levels{0}, level_of_neighbour(at(n), -1);
     std::int64_t n_products = 0;
     while (levels.back() < n) {
-        std::int64_t ahead =
-            0;  // if all that is left had its entries with each other, this would be thrice the products
+        // If all that is left had its entries with each other, this would be thrice the products.
+        std::int64_t ahead = 0;
         for (int k = 0; k < n; ++k)
             if (!order.is_placed(k))
                 ahead += static_cast<std::int64_t>(order.near[at(k)].size() * order.near[at(k)].size());

@@ -7,6 +7,7 @@
 #include "core/device/elimination.hpp"
 #include "core/index.hpp"
 #include "core/molecules/chains.hpp"
+#include "core/molecules/given/lists.hpp"
 
 namespace holonomic::device {
 
@@ -14,26 +15,19 @@ namespace {
 
 using Pairs = std::vector<std::pair<int, int>>;
 
-std::vector<std::vector<int>> neighbours(int n, const Pairs &pairs) {
-    std::vector<std::vector<int>> of(at(n));
-    for (const auto &pair : pairs) {
-        of[at(pair.first)].push_back(pair.second);
-        of[at(pair.second)].push_back(pair.first);
-    }
-    return of;
-}
-
 // Atoms from the one with the most bonds outwards, so that molecules that are written alike, a methyl group with its
 // carbon first or last, get the same numbers. Gives the number of each.
 std::vector<int> numbered_outwards(int n_atoms, const Pairs &bonds) {
-    const auto near = neighbours(n_atoms, bonds);
-    const auto more = [&](int a, int b) { return near[at(a)].size() > near[at(b)].size(); };
+    const Lists near = group(n_atoms, [&](const auto &give) {
+        for (const auto &bond : bonds) give(bond.first, bond.second), give(bond.second, bond.first);
+    });
+    const auto more = [&](int a, int b) { return near.size(a) > near.size(b); };
     std::vector<int> order(at(n_atoms)), number(at(n_atoms), -1);
     std::iota(order.begin(), order.end(), 0);
     order = {*std::min_element(order.begin(), order.end(), more)};
     number[at(order[0])] = 0;
     for (std::size_t next = 0; next < order.size(); ++next) {
-        std::vector<int> beyond = near[at(order[next])];
+        std::vector<int> beyond(near.begin(order[next]), near.end(order[next]));
         std::sort(beyond.begin(), beyond.end(), [&](int a, int b) { return more(a, b) || (!more(b, a) && a < b); });
         for (const int atom : beyond)
             if (number[at(atom)] < 0) {

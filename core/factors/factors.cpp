@@ -171,9 +171,8 @@ void Factors::solve_packed(const FactorsSolve *what, int n, const double *rhs, d
         call[k] = {what[k].v,   what[k].f,         what[k].g, rhs ? rhs : what[k].rhs, what[k].lambda, what[k].tension,
                    what[k].add, virial != nullptr, &kept_,    left + k * n_molecules};
     const Tally tally = solve_kept(chains_, call, n);
-    double sum[9];
-    const int place[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
-    for (int i = 0; virial && i < 9; ++i) sum[i] = tally.virial[place[i]];
+    double sum[9] = {};
+    add_virial(tally, sum);
     for (int k = 0; k < n; ++k) solve_rest(what[k], call[k].left, virial ? sum : nullptr);
     if (virial) write_virial(sum, virial);
 }

@@ -14,7 +14,7 @@ static inline int64_t atom_of(const AnyLane &lane, int64_t i) {
 
 // x [3]; a component that the array does not have is 0.
 static inline void read_atom(const AtomArray &array, int64_t atom, double *x) {
-    if (array.packed) {
+    if (array.packed && array.x) {
         const double *const from = reinterpret_cast<const double *>(array.x) + 3 * atom;
         for (int c = 0; c < 3; ++c) x[c] = from[c];
         return;

@@ -6,6 +6,7 @@
 #include "core/rigid/run.hpp"
 #include "core/rigid/verbs.hpp"
 #include "core/rigid/within.hpp"
+#include "core/run/execute.hpp"
 
 namespace holonomic::rigid {
 
@@ -70,8 +71,7 @@ void reactions(const Chains &chains, const AtomArray &r, const Cell &box, const 
         throw error_of_values(chains, found.tally.first_bad - chains.n_chains(), lambda, "multiplier",
                               error_of(chains, found, arrays, 1));
     }
-    const int element[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
-    for (int i = 0; virial && i < 9; ++i) virial[i] += found.tally.virial[element[i]];
+    if (virial) add_virial(found.tally, virial);
 }
 
 }  // namespace holonomic::rigid

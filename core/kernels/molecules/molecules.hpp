@@ -3,6 +3,7 @@
 
 #include "core/kernels/arithmetic/thresholds.hpp"
 #include "core/kernels/arithmetic/vector3.hpp"
+#include "core/kernels/atom.hpp"
 #include "core/kernels/molecules/atoms/layout.hpp"
 #include "core/kernels/molecules/image.hpp"
 #include "core/plan/elimination.hpp"
@@ -73,20 +74,6 @@ HOL_INLINE void masses_by_slot(const EliminationPlan &s, const MoleculeLane *lan
         for (int i = 0; i < Width<V>::lanes; ++i) Width<V>::set(w[slot], i, lane[i].w[s.atom_of[slot]]);
 }
 
-// Reads one atom, in double; a component that the array does not have is 0.
-HOL_INLINE void read_row(const AtomArray &array, int64_t number, double *x) {
-    if (array.packed && array.x) {
-        const double *const row = reinterpret_cast<const double *>(array.x) + 3 * number;
-        x[0] = row[0], x[1] = row[1], x[2] = row[2];
-        return;
-    }
-    const char *const p[3] = {array.x, array.y, array.z};
-    for (int c = 0; c < 3; ++c)
-        x[c] = !p[c]                 ? 0.0
-               : holds_floats(array) ? element<float>(p[c] + number * array.stride)
-                                     : element<double>(p[c] + number * array.stride);
-}
-
 // Finds the slots at the two ends of a bond. It points from the first to the second.
 HOL_INLINE void ends_of(const EliminationPlan &s, int32_t place, int32_t &from, int32_t &to) {
     from = place < s.n_tree ? s.parent[place] : s.from[place - s.n_tree];
@@ -99,8 +86,8 @@ HOL_INLINE void exact_bond(const Molecules<V> &x, int lane, int32_t place, Vecto
     int32_t from, to;
     ends_of(x.s, place, from, to);
     Vector3<double> a, b;
-    read_row(*x.r, x.at.number(lane, x.s.atom_of[from]), &a.x);
-    read_row(*x.r, x.at.number(lane, x.s.atom_of[to]), &b.x);
+    read_atom(*x.r, x.at.number(lane, x.s.atom_of[from]), &a.x);
+    read_atom(*x.r, x.at.number(lane, x.s.atom_of[to]), &b.x);
     unrounded_bond(*x.box, a, b, d, lo);
 }
 

@@ -2,6 +2,7 @@
 // come as chains (arms.hpp), between their ends atoms come one by one (atoms.hpp). Compiled once.
 #pragma once
 
+#include "core/kernels/atom.hpp"
 #include "core/kernels/molecules/armed_tree/arms.hpp"
 
 namespace holonomic::HOL_ISA::graph {
@@ -52,7 +53,7 @@ bool ArmedTree::read_and_solve(bool look) {
 
 HOL_NOINLINE bool is_overcorrected(const Molecules<double> &x, int32_t slot) {
     double v[3];
-    read_row(*x.in.v, x.at.number(0, x.s.atom_of[slot]), v);
+    read_atom(*x.in.v, x.at.number(0, x.s.atom_of[slot]), v);
     Overcorrected overcorrected(x.row[slot]);
     for (int32_t c = x.s.child_start[slot]; c < x.s.child_start[slot + 1]; ++c)
         overcorrected.add_child(x.row[x.s.child[c]]);

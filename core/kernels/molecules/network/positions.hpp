@@ -2,6 +2,7 @@
 // position_level.hpp that reads bonds strand by strand in lanes; newton.hpp has its equations (theory (58)).
 #pragma once
 
+#include "core/kernels/atom.hpp"
 #include "core/kernels/molecules/network/newton.hpp"
 #include "core/kernels/molecules/position_level.hpp"
 #include "core/kernels/molecules/twice.hpp"

@@ -10,6 +10,7 @@
 #pragma once
 
 #include "core/kernels/arithmetic/thresholds.hpp"
+#include "core/kernels/atom.hpp"
 #include "core/kernels/molecules/sparse_ldl/factor.hpp"
 #include "core/kernels/molecules/sparse_ldl/rates.hpp"
 #include "core/kernels/molecules/sparse_ldl/residual.hpp"
@@ -61,8 +62,8 @@ struct LdlErrorBound {
             const double w = Width<V>::get(x.w[site], lane);
             const Row &g = in.rates ? x.a[s.home[site]] : x.pull[s.home[site]];  // v + w G; G
             double f[3] = {}, product = 0;
-            if (in.v && in.v->x) read_row(*in.v, number, velocity[e]);
-            if (in.f && in.f->x) read_row(*in.f, number, f);
+            if (in.v && in.v->x) read_atom(*in.v, number, velocity[e]);
+            if (in.f && in.f->x) read_atom(*in.f, number, f);
             for (int c = 0; c < 3; ++c) {
                 const double d = component(bond, c, lane);
                 sum += w * abs(d * f[c]);

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 
+#include "core/kernels/atom.hpp"
 #include "core/kernels/molecules/sparse_ldl/linear.hpp"
 #include "core/kernels/molecules/twice.hpp"
 
@@ -36,8 +37,8 @@ public:
         for (int e = 0; e < 2; ++e) {
             const int64_t number = x.at.number(lane, s.atom_of[site[e]]);
             Vector3<double> f = {};
-            if (x.in.v && x.in.v->x) read_row(*x.in.v, number, &v[e].x);
-            if (x.in.f && x.in.f->x) read_row(*x.in.f, number, &f.x);
+            if (x.in.v && x.in.v->x) read_atom(*x.in.v, number, &v[e].x);
+            if (x.in.f && x.in.f->x) read_atom(*x.in.f, number, &f.x);
             a[e] = pulls_at(tile, site[e], pairs_of(f, Vector3<double>{}));
             a[e] = scale_pairs(x.lane[lane].w[s.atom_of[site[e]]], a[e]);
             if (x.in.rates) a[e] = add_pairs(a[e], pairs_of(v[e], Vector3<double>{}));
@@ -59,8 +60,8 @@ private:
 
     Pair3<double> bond(int32_t from, int32_t to) const {
         Vector3<double> r[2] = {}, d = {}, low = {};
-        read_row(x.coordinates, x.at.number(lane, s.atom_of[from]), &r[0].x);
-        read_row(x.coordinates, x.at.number(lane, s.atom_of[to]), &r[1].x);
+        read_atom(x.coordinates, x.at.number(lane, s.atom_of[from]), &r[0].x);
+        read_atom(x.coordinates, x.at.number(lane, s.atom_of[to]), &r[1].x);
         unrounded_bond(x.box, r[0], r[1], d, low);
         return pairs_of(d, low);
     }

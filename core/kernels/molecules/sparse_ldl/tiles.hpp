@@ -2,6 +2,7 @@
 // to each other, triangular solves, and what is read of a tile's atoms.
 #pragma once
 
+#include "core/kernels/atom.hpp"
 #include "core/kernels/molecules/molecules.hpp"
 #include "core/kernels/molecules/share_out.hpp"
 #include "core/kernels/molecules/sparse_ldl/rows.hpp"
@@ -158,7 +159,7 @@ HOL_INLINE Row row_at(const AtomArray &array, int64_t number) {
                                   _mm256_set_epi64x(0, -1, -1, -1));
 #endif
     double x[3];
-    read_row(array, number, x);
+    read_atom(array, number, x);
     return Row{x[0], x[1], x[2], 0};
 }
 // Calls body(site of the tile, rows of these arrays) for the sites of a tile of one molecule; rows that are not read

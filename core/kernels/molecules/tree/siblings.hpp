@@ -12,6 +12,7 @@
 // do.
 #pragma once
 
+#include "core/kernels/atom.hpp"
 #include "core/kernels/molecules/tree/many.hpp"
 
 namespace holonomic::HOL_ISA::graph {
@@ -77,8 +78,8 @@ HOL_NOINLINE double terms_of(const Inputs &in, const double *d, const int64_t *n
     double sum = 0, v[2][3] = {};
     for (int e = 0; e < 2; ++e) {
         double f[3] = {};
-        if (in.v->x) read_row(*in.v, number[e], v[e]);
-        if (in.f && in.f->x) read_row(*in.f, number[e], f);
+        if (in.v->x) read_atom(*in.v, number[e], v[e]);
+        if (in.f && in.f->x) read_atom(*in.f, number[e], f);
         for (int c = 0; c < 3; ++c) sum += w[e] * __builtin_fabs(d[c] * f[c]);
         for (int c = 0; c < 3 && in.rates; ++c) sum += __builtin_fabs(d[c] * v[e][c]);
     }

@@ -2,6 +2,7 @@
 // while it is in a cache, and by any thread.
 #pragma once
 
+#include "core/kernels/atom.hpp"
 #include "core/kernels/molecules/share_out.hpp"
 #include "core/kernels/molecules/tree_batch/flagged.hpp"
 
@@ -155,7 +156,7 @@ struct LargeTree {
         const BatchJoint joint(z, number / W);
         const int i = number % W;
         double v[3];
-        read_row(*z.in.v, z.at.number(i, z.atom_of(joint.step)[i]), v);
+        read_atom(*z.in.v, z.at.number(i, z.atom_of(joint.step)[i]), v);
         Overcorrected overcorrected(bond_at(z.above_of(joint.step)[i]));
         for (int a = 0; a < joint.children(i); ++a)
             overcorrected.add_child(bond_at(joint.element(a, i, z.f.step[joint.step].children)));

@@ -1,6 +1,7 @@
 // Goes up and down W different trees: the sweeps of tree/joint.hpp, step by step.
 #pragma once
 
+#include "core/kernels/atom.hpp"
 #include "core/kernels/molecules/tree/joint.hpp"
 #include "core/kernels/molecules/tree_batch/linear.hpp"
 
@@ -51,7 +52,7 @@ struct BatchJoint {
         int32_t atom[2];
         double end[2][3];
         x.ends(element, atom);
-        for (int e = 0; e < 2; ++e) read_row(x.r, x.at.number(element % W, atom[e]), end[e]);
+        for (int e = 0; e < 2; ++e) read_atom(x.r, x.at.number(element % W, atom[e]), end[e]);
         unrounded_bond(x.box, end[0], end[1], d, low);
     }
     __attribute__((noinline)) vec products_anew(unsigned which, vec g) const {
