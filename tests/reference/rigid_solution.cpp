@@ -95,11 +95,13 @@ public:
         o.scale = amplified(inverse_, size);
         return o;
     }
-    outcome positions(const std::vector<double> &drifted) const
+    /** Newton's method begins at the drifted atoms, or near `found`, if that is not empty. */
+    outcome positions(const std::vector<double> &drifted, const std::vector<double> &found) const
     {
         outcome o;
         o.z = s_.nodes(drifted);
         o.t.resize(n_rows());
+        if (!found.empty()) move_near(s_.nodes(found), o);
         if (!newton(o)) return o;
         o.there = true;
         if (!scales_) return o;
@@ -177,6 +179,17 @@ private:
         for (std::size_t k = 0; k < b.size(); ++k)
             for (const auto &g : g_[k]) size[k] += absolute(product(g.g, o.z[g.node]));
         o.scale = amplified(inverse_, size);
+    }
+
+    /** As near to `target` as the multipliers can bring the nodes. */
+    void move_near(const std::vector<vec> &target, outcome &o) const
+    {
+        std::vector<real> b(n_rows());
+        for (std::size_t k = 0; k < b.size(); ++k)
+            for (const auto &g : g_[k]) b[k] += product(g.g, o.z[g.node]) - product(g.g, target[g.node]);
+        o.t = factor_.solve(b);
+        for (std::size_t k = 0; k < b.size(); ++k)
+            for (const auto &g : g_[k]) add_times(o.z[g.node], -s_.w[g.node] * o.t[k], g.g);
     }
 
     bool newton(outcome &o) const
@@ -344,7 +357,7 @@ body_shape shape_of_body(const rigid_problem &p, const std::vector<std::size_t> 
 }
 
 rigid_solution solve_rigid(const rigid_problem &p, const std::vector<double> &rhs, const std::vector<double> &drifted,
-                           double dt)
+                           double dt, const std::vector<double> &found)
 {
     rigid_solution out;
     const solver points(p, kind::points, false), vectors(p, kind::vectors, true);
@@ -367,7 +380,8 @@ rigid_solution solve_rigid(const rigid_problem &p, const std::vector<double> &rh
     out.agrees = out.agrees && same;
     if (drifted.empty() || !(dt > 0)) return out;
     // From far away Newton's method may come to different solutions: that case has no reference.
-    out.positions = both(points.positions(drifted), vectors.positions(drifted), real(1) / (real(dt) * real(dt)), true);
+    out.positions = both(points.positions(drifted, found), vectors.positions(drifted, found),
+                         real(1) / (real(dt) * real(dt)), true);
     out.positions.there = out.positions.there && same;
     return out;
 }

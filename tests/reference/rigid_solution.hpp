@@ -80,9 +80,11 @@ struct rigid_solution {
     rigid_level forces, solve, velocities, positions;
 };
 
-/** rhs [n_bonds] or empty: no `solve`. drifted [n_atoms][3] or empty: no `positions`. */
+/** rhs [n_bonds] or empty: no `solve`. drifted [n_atoms][3] or empty: no `positions`. Of several positions that obey
+ * the constraints those that Newton's method comes to from `drifted`, or from near `found` [n_atoms][3], if that is not
+ * empty. */
 rigid_solution solve_rigid(const rigid_problem &p, const std::vector<double> &rhs, const std::vector<double> &drifted,
-                           double dt);
+                           double dt, const std::vector<double> &found = {});
 
 }  // namespace reference
 

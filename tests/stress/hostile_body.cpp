@@ -133,6 +133,12 @@ void draw_motion(hostile_body &m, molecule_dice &d)
     if (!std::isfinite(m.dt)) m.dt = 0;
 }
 
+void mirror_if_it_matters(rigid_problem &p, std::size_t body)
+{
+    if (reference::facts_of_body(p, body).off_plane.empty()) return;
+    for (const std::size_t atom : p.bodies[body]) p.place[3 * atom] *= -1;
+}
+
 bool set_lengths(hostile_body &m)
 {
     m.p.length.clear();

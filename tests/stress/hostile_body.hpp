@@ -75,6 +75,10 @@ hostile_body make_listed(std::uint64_t seed);
  * in use. Nothing else of it is to be asked for before. */
 void complete_listed(hostile_body &m);
 
+/** The places of a body whose positions are mirrored. They stay as they are unless a site is off a plane: which of two
+ * mirror images another body is the positions say. */
+void mirror_if_it_matters(reference::rigid_problem &p, std::size_t body);
+
 /** What both have in common: forces, velocities and a step; whether no bond is all but rounding. */
 void draw_motion(hostile_body &m, molecule_dice &d);
 bool set_lengths(hostile_body &m);

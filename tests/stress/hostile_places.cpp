@@ -213,6 +213,7 @@ private:
                         : 0;
                 for (std::size_t x = 0; x < 3; ++x) m_.p.r[3 * a + x] += start[x] - part * n[x];
             }
+            mirror_if_it_matters(m_.p, m_.p.bodies.size() - 1);
             join(last, first);
             last = other;
         }
