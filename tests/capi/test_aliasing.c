@@ -91,14 +91,15 @@ static void check(const mixture *m)
     CHECK(hol_chains_set_checks(m->chains, HOL_NEVER));
     multipliers_may_stand_where_right_hand_sides_stood(m);
     for (int apart = 0; apart < 2; ++apart) {
-        forces_may_stand_where_forces_stood(m, apart, HOL_WRITE);
-        forces_may_stand_where_forces_stood(m, apart, HOL_ADD);
+        if (!quick_run() || !apart) forces_may_stand_where_forces_stood(m, apart, HOL_WRITE);
+        if (!quick_run() || apart) forces_may_stand_where_forces_stood(m, apart, HOL_ADD);
         positions_may_be_their_own_reference(m, apart);
     }
 }
 
 /** Alone, with others like it, and among other atoms; of large molecules one other is enough. Under slow tools those
- * like it are left out, and large molecules are among other atoms only. */
+ * like it are left out, large molecules are among other atoms only, and there are none of thousands of bonds but trees.
+ */
 static void check_molecule(molecule m)
 {
     molecule parts[5] = {m, m, m, m, m};
@@ -122,10 +123,10 @@ static void chains_and_rings_of_any_length(void **state)
 {
     (void)state;
     static const int64_t chains[] = {1, 2, 3, 4, 5, 6, 40, 256, 257, 400, 1000, 2050, 4100};
-    for (size_t i = 0; i < sizeof chains / sizeof *chains; ++i)
+    for (size_t i = 0; i < sizeof chains / sizeof *chains && !(quick_run() && chains[i] > 1000); ++i)
         check_molecule(molecule_make(MOLECULE_CHAIN, chains[i], 11 + i));
     static const int64_t rings[] = {4, 12, 100, 300, 600, 2600, 4100};
-    for (size_t i = 0; i < sizeof rings / sizeof *rings; ++i)
+    for (size_t i = 0; i < sizeof rings / sizeof *rings && !(quick_run() && rings[i] > 1000); ++i)
         check_molecule(molecule_make(MOLECULE_RING, rings[i], 40 + i));
     check_molecule(molecule_make(MOLECULE_LARIAT, 300, 5));
 }

@@ -58,7 +58,7 @@ static void all_levels_are_those_of_many_digits(void **state)
     /* A sheet has fewer digits to find than a cube, which the next test has. */
     for (int which = quick_run() ? n_sorts - 1 : 0; which < n_sorts; ++which) {
         sort of = sorts[which];
-        if (quick_run()) of.n = 12;
+        if (quick_run()) of.n = 10;
         network_scene s = added(of, 1 + (uint64_t)which);
         const molecule_problem p = network_problem(&s);
         double *lambda = untouched((size_t)s.m.n_bonds);

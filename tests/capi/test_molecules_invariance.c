@@ -352,7 +352,7 @@ static void copies_are_the_same_through_every_layout(void **state)
             double *start = copy_of(m.r, size), *reference = copy_of(m.r, size);
             for (size_t i = 0; i < size; ++i) start[i] += dt * m.v[i];
             if (bad) m.f[size / 2] = m.v[size / 2] = start[size / 2] = NAN;
-            for (int l = 0; l < n_layouts; ++l) {
+            for (int l = quick_run() ? bad : 0; l < n_layouts; l += quick_run() ? 2 : 1) {
                 double *lambda = untouched(n), *got = untouched(n), *g = copy_of(m.f, size), *v = copy_of(m.v, size),
                        *q = copy_of(start, size), *u = copy_of(m.f, size);
                 laid_out r = lay_out(layouts + l, m.n_atoms, reference, 3), f = lay_out(layouts + l, m.n_atoms, m.f, 3),

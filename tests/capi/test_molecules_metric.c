@@ -62,7 +62,7 @@ static void fixman_forces_are_differences_of_the_energy(void **state)
         mixture m = mixture_of_kind(kinds[k], 1, kinds[k] == MOLECULE_DENDRIMER ? 1 : 5, 5, ONE_AFTER_THE_OTHER, 2 + k);
         double *force = untouched(mixture_size(&m)), total[3] = {0};
         CHECK(hol_metric(m.chains, m.r, 1, NULL, NULL, NULL, force, HOL_WRITE));
-        for (size_t i = 0; i < mixture_size(&m); ++i) {
+        for (size_t i = 0; i < mixture_size(&m); i += quick_run() ? 7 : 1) {
             const double here = m.r[i];
             double energy[4];
             for (int n = 0; n < 4; ++n) {
@@ -74,7 +74,7 @@ static void fixman_forces_are_differences_of_the_energy(void **state)
             CHECK_AT_MOST(fabs(force[i] + slope), 1e-8);
             total[i % 3] += force[i];
         }
-        for (int x = 0; x < 3; ++x) CHECK_AT_MOST(fabs(total[x]), 256 * DBL_EPSILON);
+        for (int x = 0; x < 3 && !quick_run(); ++x) CHECK_AT_MOST(fabs(total[x]), 256 * DBL_EPSILON);
         free(force);
         mixture_free(&m);
     }
@@ -84,7 +84,7 @@ static void fixman_forces_are_differences_of_the_energy(void **state)
 static void inverse_elements_agree_with_the_dense_inverse(void **state)
 {
     (void)state;
-    for (int kind = 0; kind < MOLECULE_GOOD_KINDS; ++kind) {
+    for (int kind = 0; kind < MOLECULE_GOOD_KINDS; kind += quick_run() ? 3 : 1) {
         if (kind == MOLECULE_FIXED_ATOMS) continue; /* several molecules */
         mixture m =
             mixture_of_kind((molecule_kind)kind, 1, kind == MOLECULE_DENDRIMER ? 1 : 6, 6, MIXED, 70 + (uint64_t)kind);
