@@ -203,19 +203,23 @@ private:
             for (const std::int32_t a : rows)
                 for (const std::int32_t b : rows)
                     if (a != b) neighbours[at(a)].push_back(b);
+        Lists lists{{0}, {}};
         for (auto &list : neighbours) {
             std::sort(list.begin(), list.end());
             list.erase(std::unique(list.begin(), list.end()), list.end());
+            lists.item.insert(lists.item.end(), list.begin(), list.end());
+            lists.start.push_back(static_cast<std::int32_t>(lists.item.size()));
         }
-        const std::vector<std::int32_t> order = minimum_degree(neighbours);
+        const std::vector<std::int32_t> order = minimum_degree(std::move(lists));
         std::vector<std::int32_t> number(order.size());
         for (std::size_t k = 0; k < order.size(); ++k) number[at(order[k])] = static_cast<std::int32_t>(k);
-        Lists ordered{{0}, {}};
-        for (const std::int32_t row : order) {
-            for (const std::int32_t other : neighbours[at(row)]) ordered.item.push_back(number[at(other)]);
-            ordered.start.push_back(static_cast<std::int32_t>(ordered.item.size()));
+        FillMaker maker(static_cast<std::int32_t>(order.size()));
+        for (std::size_t k = 0; k < order.size(); ++k) {
+            for (const std::int32_t other : neighbours[at(order[k])])
+                maker.add(static_cast<std::int32_t>(k), number[at(other)]);
+            maker.end_column(static_cast<std::int32_t>(k));
         }
-        const Fill fill = fill_of(ordered);
+        const Fill fill = maker.made();
         s_.column_start = fill.column_start;
         s_.row = fill.row;
         write_rows(order);

@@ -8,7 +8,12 @@ namespace holonomic {
 
 namespace {
 
-using Rows = std::vector<std::int32_t>;
+using Rows = Numbers;
+
+void check_count(std::int64_t n) {
+    if (n > std::numeric_limits<std::int32_t>::max())
+        throw std::length_error("the elimination of a molecule fills its matrix");
+}
 
 // Rows by degree, in doubly linked lists: taking the first of the least degree and moving a row cost nothing.
 class Degrees {
@@ -50,31 +55,72 @@ private:
     std::size_t least_ = 0;
 };
 
+// Rows that lose and gain neighbours, in one array: a row that has no room left moves to its end.
+class GrowingRows {
+public:
+    explicit GrowingRows(Lists &&lists) : item_(std::move(lists.item)), row_(lists.start.size() - 1) {
+        for (std::size_t i = 0; i < row_.size(); ++i) {
+            const std::int32_t size = lists.size(static_cast<std::int32_t>(i));
+            row_[i] = {at(lists.start[i]), size, size};
+        }
+        item_.reserve(item_.size() + item_.size() / 2);
+    }
+    std::int32_t count() const { return static_cast<std::int32_t>(row_.size()); }
+    std::int32_t size(std::int32_t i) const { return row_[at(i)].size; }
+    std::int32_t *begin(std::int32_t i) { return item_.data() + row_[at(i)].first; }
+    void set_size(std::int32_t i, std::int32_t size) { row_[at(i)].size = size; }
+    void add(std::int32_t i, std::int32_t item) {
+        Row &row = row_[at(i)];
+        if (row.size == row.room) move(row);
+        item_[row.first + at(row.size++)] = item;
+    }
+
+private:
+    struct Row {
+        std::size_t first;
+        std::int32_t size, room;
+    };
+    void move(Row &row) {
+        const std::size_t first = item_.size();
+        item_.resize(first + at(row.room = 2 * row.size + 2));
+        std::copy_n(item_.data() + row.first, row.size, item_.data() + first);
+        row.first = first;
+    }
+
+    Rows item_;
+    std::vector<Row> row_;
+};
+
 }  // namespace
 
-std::vector<std::int32_t> minimum_degree(std::vector<Rows> neighbours, Ties ties, std::int64_t most_bytes) {
-    const std::size_t n = neighbours.size();
-    Degrees degrees(n, ties);
-    for (std::size_t i = n; i-- > 0;) degrees.insert(static_cast<std::int32_t>(i), neighbours[i].size());
-    Rows order, seen(n, -1);
+Numbers minimum_degree(Lists neighbours, Ties ties, std::int64_t most_bytes) {
+    GrowingRows rows(std::move(neighbours));
+    const std::int32_t n = rows.count();
+    Degrees degrees(at(n), ties);
+    for (std::int32_t i = n; i-- > 0;) degrees.insert(i, at(rows.size(i)));
+    Rows order(at(n)), seen(at(n), -1), front;
     std::int64_t bytes = 0;
-    order.reserve(n);
-    for (std::size_t step = 0; step < n; ++step) {
-        const std::int32_t k = degrees.take_least();
-        order.push_back(k);
-        const Rows front = std::move(neighbours[static_cast<std::size_t>(k)]);
-        bytes += bytes_of_column(static_cast<std::int64_t>(front.size()));
+    for (std::int32_t &k : order) {
+        k = degrees.take_least();
+        front.assign(rows.begin(k), rows.begin(k) + rows.size(k));
+        bytes += bytes_of_column(rows.size(k));
         if (bytes > most_bytes) throw TooMuchMemory(bytes);
         for (const std::int32_t i : front) {
             // The neighbours of i without k, and all others of k.
-            Rows &mine = neighbours[static_cast<std::size_t>(i)];
-            mine.erase(std::remove(mine.begin(), mine.end(), k), mine.end());
-            seen[static_cast<std::size_t>(i)] = i;
-            for (const std::int32_t j : mine) seen[static_cast<std::size_t>(j)] = i;
+            std::int32_t *const mine = rows.begin(i);
+            std::int32_t left = 0;
+            seen[at(i)] = i;
+            for (std::int32_t l = 0; l < rows.size(i); ++l) {
+                const std::int32_t j = mine[l];
+                seen[at(j)] = i;
+                mine[left] = j;
+                left += j != k;
+            }
+            rows.set_size(i, left);
             for (const std::int32_t j : front)
-                if (seen[static_cast<std::size_t>(j)] != i) mine.push_back(j);
+                if (seen[at(j)] != i) rows.add(i, j);
             degrees.remove(i);
-            degrees.insert(i, mine.size());
+            degrees.insert(i, at(rows.size(i)));
         }
     }
     return order;
@@ -82,77 +128,56 @@ std::vector<std::int32_t> minimum_degree(std::vector<Rows> neighbours, Ties ties
 
 void order_bonds(const Lists &bonds, const std::int32_t *atom_i, const std::int32_t *atom_j, const Numbers &core,
                  const Numbers &number, Ties ties, std::int64_t most_bytes, Numbers &order) {
-    std::vector<Rows> neighbours(core.size());
-    for (std::size_t p = 0; p < core.size(); ++p)
-        for (const std::int32_t i : {atom_i[core[p]], atom_j[core[p]]})
+    Lists neighbours;
+    neighbours.start.reserve(core.size() + 1);
+    neighbours.item.reserve(4 * core.size());
+    neighbours.start.push_back(0);
+    for (const std::int32_t k : core) {
+        for (const std::int32_t i : {atom_i[k], atom_j[k]})
             for (const std::int32_t *l = bonds.begin(i); l != bonds.end(i); ++l)
-                if (*l != core[p] && number[at(*l)] >= 0) neighbours[p].push_back(number[at(*l)]);
+                if (*l != k && number[at(*l)] >= 0) neighbours.item.push_back(number[at(*l)]);
+        check_count(static_cast<std::int64_t>(neighbours.item.size()));
+        neighbours.start.push_back(static_cast<std::int32_t>(neighbours.item.size()));
+    }
     for (const std::int32_t p : minimum_degree(std::move(neighbours), ties, most_bytes)) order.push_back(core[at(p)]);
 }
 
-namespace {
-
-void check_count(std::int64_t n) {
-    if (n > std::numeric_limits<std::int32_t>::max())
-        throw std::length_error("the elimination of a molecule fills its matrix");
+FillMaker::FillMaker(std::int32_t n) : seen_(at(n), -1), child_(at(n), -1), next_child_(at(n), -1) {
+    fill_.column_start.reserve(at(n) + 1);
+    fill_.column_start.push_back(0);
+    fill_.row.reserve(4 * at(n));
 }
 
-}  // namespace
-
-Lists neighbours_of(const Lists &meeting, std::int32_t n) {
-    const std::int32_t n_lists = static_cast<std::int32_t>(meeting.start.size()) - 1;
-    std::int64_t pairs = 0;
-    for (std::int32_t i = 0; i < n_lists; ++i) pairs += std::int64_t{meeting.size(i)} * (meeting.size(i) - 1);
-    check_count(pairs);
-    return group(n, [&](const auto &give) {
-        for (std::int32_t i = 0; i < n_lists; ++i)
-            for (const std::int32_t *p = meeting.begin(i); p != meeting.end(i); ++p)
-                for (const std::int32_t *q = meeting.begin(i); q != meeting.end(i); ++q)
-                    if (p != q) give(*p, *q);
-    });
-}
-
-Fill fill_of(const Lists &neighbours) {
-    const std::int32_t n = static_cast<std::int32_t>(neighbours.start.size()) - 1;
-    Fill fill;
-    fill.column_start.assign(at(n) + 1, 0);
-    // A column has the rows of the matrix and those of the columns whose first row it is, its children.
-    Rows seen(at(n), -1), column, child(at(n), -1), next_child(at(n), -1);
-    for (std::int32_t k = 0; k < n; ++k) {
-        column.clear();
-        const auto take = [&](const std::int32_t *i, const std::int32_t *end) {
-            for (; i != end; ++i) {
-                if (*i <= k || seen[at(*i)] == k) continue;
-                seen[at(*i)] = k;
-                column.push_back(*i);
-            }
-        };
-        take(neighbours.begin(k), neighbours.end(k));
-        for (std::int32_t c = child[at(k)]; c >= 0; c = next_child[at(c)])
-            take(fill.row.data() + fill.column_start[at(c)], fill.row.data() + fill.column_start[at(c) + 1]);
-        std::sort(column.begin(), column.end());
-        check_count(static_cast<std::int64_t>(fill.row.size() + column.size()));
-        fill.row.insert(fill.row.end(), column.begin(), column.end());
-        fill.column_start[at(k) + 1] = static_cast<std::int32_t>(fill.row.size());
-        if (column.empty()) continue;
-        next_child[at(k)] = child[at(column[0])];
-        child[at(column[0])] = k;
+void FillMaker::end_column(std::int32_t k) {
+    // A column has those of the columns whose first row it is, its children.
+    for (std::int32_t c = child_[at(k)]; c >= 0; c = next_child_[at(c)]) {
+        const std::size_t first = at(fill_.column_start[at(c)]), end = at(fill_.column_start[at(c) + 1]);
+        for (std::size_t e = first + 1; e < end; ++e) add(k, fill_.row[e]);
     }
-    return fill;
+    check_count(static_cast<std::int64_t>(fill_.row.size()));
+    const std::int32_t first = fill_.column_start.back(), end = static_cast<std::int32_t>(fill_.row.size());
+    fill_.column_start.push_back(end);
+    if (first == end) return;
+    sort_short(fill_.row.data() + first, fill_.row.data() + end);
+    const std::int32_t parent = fill_.row[at(first)];
+    next_child_[at(k)] = child_[at(parent)];
+    child_[at(parent)] = k;
 }
 
 Fill in_order(const Fill &fill, const Numbers &order) {
     Fill made;
     made.column_start.assign(1, 0);
     made.column_start.reserve(order.size() + 1);
-    made.row.reserve(fill.row.size());
+    made.row.resize(fill.row.size());
     Numbers number(order.size());
     for (std::size_t p = 0; p < order.size(); ++p) number[at(order[p])] = static_cast<std::int32_t>(p);
+    std::int32_t *end = made.row.data();
     for (const std::int32_t k : order) {
+        std::int32_t *const first = end;
         for (std::int32_t e = fill.column_start[at(k)]; e < fill.column_start[at(k) + 1]; ++e)
-            made.row.push_back(number[at(fill.row[at(e)])]);
-        std::sort(made.row.begin() + made.column_start.back(), made.row.end());
-        made.column_start.push_back(static_cast<std::int32_t>(made.row.size()));
+            *end++ = number[at(fill.row[at(e)])];
+        sort_short(first, end);
+        made.column_start.push_back(static_cast<std::int32_t>(end - made.row.data()));
     }
     return made;
 }

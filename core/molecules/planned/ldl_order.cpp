@@ -1,8 +1,10 @@
 #include "core/molecules/planned/ldl_order.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <queue>
 #include <utility>
+#include <vector>
 
 namespace holonomic {
 
@@ -34,10 +36,8 @@ Numbers post_order(const Fill &fill, const Numbers &size) {
             if (parent(k) >= 0) give(parent(k), k);
     });
     for (std::int32_t k = 0; k < n; ++k)  // the last one is visited first
-        std::sort(children.item.begin() + children.start[at(k)], children.item.begin() + children.start[at(k) + 1],
-                  [&](std::int32_t a, std::int32_t b) {
-                      return size[at(a)] != size[at(b)] ? size[at(a)] < size[at(b)] : a < b;
-                  });
+        sort_short(children.item.data() + children.start[at(k)], children.item.data() + children.start[at(k) + 1],
+                   [&](std::int32_t a, std::int32_t b) { return size[at(a)] < size[at(b)]; });
     Numbers order, stack, end(children.start.begin() + 1, children.start.end());  // end: of those not yet visited
     order.reserve(at(n));
     for (std::int32_t root = 0; root < n; ++root) {
@@ -116,21 +116,19 @@ public:
 
     // Of the columns up to `end`, after those before.
     void make(std::size_t end, Numbers &made) {
-        Numbers round;
+        std::int32_t round[most_in_round];
         while (made.size() < end) {
             advance(end);
-            round.clear();
-            while (!ready_.empty() && round.size() < most_in_round) {
-                const std::size_t place = static_cast<std::size_t>(-ready_.top().second);
-                ready_.pop();
-                round.push_back(order_[place]);
+            std::size_t n = 0;
+            for (; !ready_.empty() && n < most_in_round; ready_.pop()) {
+                const std::size_t place = static_cast<std::uint32_t>(~ready_.top());
+                round[n++] = order_[place];
                 done_[place] = 1;
             }
-            std::stable_sort(round.begin(), round.end(), [&](std::int32_t a, std::int32_t b) {
-                return entries_of(fill_, a) < entries_of(fill_, b);
-            });
-            made.insert(made.end(), round.begin(), round.end());
-            for (const std::int32_t k : round) release(parent_of(fill_, k));
+            sort_short(round, round + n,
+                       [&](std::int32_t a, std::int32_t b) { return entries_of(fill_, a) < entries_of(fill_, b); });
+            made.insert(made.end(), round, round + n);
+            for (std::size_t i = 0; i < n; ++i) release(parent_of(fill_, round[i]));
         }
     }
 
@@ -143,7 +141,9 @@ private:
         for (; seen_ < std::min(end, first_ + columns_ahead); ++seen_)
             if (waits_for_[at(order_[seen_])] == 0) push(seen_);
     }
-    void push(std::size_t place) { ready_.emplace(depth_[at(order_[place])], -static_cast<std::int64_t>(place)); }
+    void push(std::size_t place) {
+        ready_.push(static_cast<std::uint64_t>(depth_[at(order_[place])]) << 32 | static_cast<std::uint32_t>(~place));
+    }
     void release(std::int32_t k) {
         if (k >= 0 && --waits_for_[at(k)] == 0 && at(place_[at(k)]) < seen_) push(at(place_[at(k)]));
     }
@@ -153,15 +153,13 @@ private:
     Numbers depth_, waits_for_, place_;  // by column
     std::vector<unsigned char> done_;    // by place in order_
     std::size_t first_ = 0, seen_ = 0;
-    // By depth, of equally deep ones the first.
-    std::priority_queue<std::pair<std::int32_t, std::int64_t>> ready_;
+    std::priority_queue<std::uint64_t>
+        ready_;  // depth, and by its complement the place: of equally deep ones the first
 };
 
 }  // namespace
 
-Numbers bonds_from_the_leaves(const EliminationPlan &s) {
-    const Lists bonds =
-        invert(s.n_atoms, s.n_bonds, [&](std::int32_t k, int end) { return (end ? s.atom_j : s.atom_i)[k]; });
+Numbers bonds_from_the_leaves(const EliminationPlan &s, const Lists &bonds) {
     Numbers order, leaves, left(at(s.n_atoms));
     std::vector<unsigned char> gone(at(s.n_bonds));
     for (std::int32_t i = 0; i < s.n_atoms; ++i)

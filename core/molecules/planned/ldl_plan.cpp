@@ -9,7 +9,6 @@ namespace holonomic {
 
 namespace {
 
-using Rows = std::vector<Numbers>;
 using Tile = LdlPlan::Tile;
 
 template <class T>
@@ -22,56 +21,77 @@ void pad(Numbers &list, std::int32_t inert) {
 
 class LdlPlanMaker {
 public:
-    LdlPlanMaker(const EliminationPlan &s, LdlArrays &a) : s_(s), a_(a) {}
+    LdlPlanMaker(const EliminationPlan &s, LdlArrays &a)
+        : s_(s), a_(a), bonds_(invert(s.n_atoms, s.n_bonds,
+                                      [&](std::int32_t k, int end) { return (end ? s.atom_j : s.atom_i)[k]; })) {}
 
     void make() {
-        const Numbers order = bonds_from_the_leaves(s_);
-        a_.bond_of = order;
-        const Fill leaves_first = fill_of(neighbours_of(bonds_of_atoms(), s_.n_bonds));
-        const ListOrder made = order_of_list(leaves_first);
-        for (std::int32_t p = 0; p < s_.n_bonds; ++p) a_.bond_of[at(p)] = order[at(made.column[at(p)])];
-        Fill fill = in_order(leaves_first, made.column);
-        start_ = std::move(fill.column_start);
-        row_ = std::move(fill.row);
-        bonds_ = bonds_of_atoms();
-        open_subtrees(made.subtree_end);
+        put_in_order();
+        open_tiles();
         for (Tile &t : a_.tile) list_bonds(t);
         list_homes();
-        for (Tile &t : a_.tile) list_entries(t);
-        side_of_.assign(at(a_.list.n_entries), -1);
-        for (Tile &t : a_.tile) list_updates(t);
+        list_entries();
+        list_updates();
         list_sides();
         close();
     }
 
 private:
-    Lists bonds_of_atoms() const {
-        return invert(s_.n_atoms, s_.n_bonds, [&](std::int32_t p, int end) { return end_of(p, end); });
-    }
     // An atom of column p.
-    std::int32_t end_of(std::int32_t p, int end) const {
-        const std::int32_t k = a_.bond_of[at(p)];
-        return (end ? s_.atom_j : s_.atom_i)[k];
+    std::int32_t end_of(std::int32_t p, int end) const { return end_[at(2 * p + end)]; }
+    void list_ends() {
+        end_.resize(at(2 * s_.n_bonds));
+        for (std::int32_t p = 0; p < s_.n_bonds; ++p) {
+            end_[at(2 * p)] = s_.atom_i[a_.bond_of[at(p)]];
+            end_[at(2 * p + 1)] = s_.atom_j[a_.bond_of[at(p)]];
+        }
     }
-    // Where an entry is.
-    std::int32_t entry(std::int32_t row, std::int32_t column) const {
-        const auto begin = row_.begin();
-        const std::int32_t e = static_cast<std::int32_t>(
-            std::lower_bound(begin + start_[at(column)], begin + start_[at(column) + 1], row) - begin);
-        const Tile &t = a_.tile[at(tile_of_[at(column)])];
-        return t.first_entry + e - start_[at(t.first)];
+    // The bonds of each atom by other numbers: `order` has those they have now.
+    void renumber(const Numbers &order) {
+        Numbers place(order.size());
+        for (std::size_t p = 0; p < order.size(); ++p) place[at(order[p])] = static_cast<std::int32_t>(p);
+        for (std::int32_t &k : bonds_.item) k = place[at(k)];
+    }
+
+    void put_in_order() {
+        const Numbers leaves_first = bonds_from_the_leaves(s_, bonds_);
+        renumber(leaves_first);
+        a_.bond_of = leaves_first;
+        list_ends();
+        const Fill filled = fill_of(bonds_, s_.n_bonds, [&](std::int32_t p, int end) { return end_of(p, end); });
+        const ListOrder made = order_of_list(filled);
+        renumber(made.column);
+        for (std::size_t p = 0; p < made.column.size(); ++p) a_.bond_of[p] = leaves_first[at(made.column[p])];
+        list_ends();
+        Fill fill = in_order(filled, made.column);
+        start_ = std::move(fill.column_start);
+        row_ = std::move(fill.row);
+        subtree_end_ = made.subtree_end;
     }
 
     // Subtrees and the separator behind them, and their tiles.
-    void open_subtrees(const Numbers &subtree_end) {
+    void open_tiles() {
+        tile_of_.reserve(at(s_.n_bonds));
         std::int32_t first = 0;
-        for (const std::int32_t end : subtree_end) first = open_tiles(first, end);
+        for (const std::int32_t end : subtree_end_) first = open_tiles(first, end);
         open_tiles(first, s_.n_bonds);
         a_.list.n_columns = static_cast<std::int32_t>(in_fours(s_.n_bonds));
-        a_.place_of.assign(at(s_.n_atoms), -1);
+        a_.place_of.resize(at(s_.n_atoms));
         number_.assign(at(s_.n_atoms), -1);
-        side_of_.assign(at(s_.n_bonds), -1);
-        row_of_.assign(at(s_.n_bonds), -1);
+        // An atom is at home in the first tile that has bonds of it.
+        home_.assign(at(s_.n_atoms), -1);
+        for (std::int32_t p = 0; p < s_.n_bonds; ++p)
+            for (int end = 0; end < 2; ++end)
+                if (std::int32_t &home = home_[at(end_of(p, end))]; home < 0) home = tile_of_[at(p)];
+        group(
+            size_of(a_.tile),
+            [&](const auto &give) {
+                for (std::int32_t i = 0; i < s_.n_atoms; ++i) give(home_[at(i)], i);
+            },
+            own_);
+        extra_.resize(a_.tile.size());
+        for (Numbers *const list : {&a_.from, &a_.to}) list->reserve(at(s_.n_bonds + 8 * size_of(a_.tile)));
+        a_.atom_of.reserve(at(s_.n_atoms));
     }
 
     std::int32_t open_tiles(std::int32_t first, std::int32_t end) {
@@ -93,49 +113,48 @@ private:
 
     // The atoms and bonds of a tile: its own in the order of memory, then ghosts.
     void list_bonds(Tile &t) {
-        Numbers bonds, own, ghosts;
-        for (std::int32_t p = t.first; p < t.end; ++p) bonds.push_back(p);
-        for (std::int32_t p = t.first; p < t.end; ++p)
-            for (int end = 0; end < 2; ++end) {
-                const std::int32_t i = end_of(p, end);
-                if (number_[at(i)] >= 0) continue;
-                number_[at(i)] = 0;
-                (a_.place_of[at(i)] < 0 ? own : ghosts).push_back(i);
-                for (const std::int32_t *q = bonds_.begin(i); q != bonds_.end(i); ++q)
-                    if (*q >= t.end) bonds.push_back(*q);
-            }
-        const auto extra = bonds.begin() + (t.end - t.first);
-        std::sort(extra, bonds.end());
-        bonds.erase(std::unique(extra, bonds.end()), bonds.end());
-        t.first_row = size_of(a_.from);
-        const std::size_t visiting = ghosts.size();
-        for (std::size_t b = at(t.end - t.first); b < bonds.size(); ++b)
-            for (int end = 0; end < 2; ++end) {
-                const std::int32_t i = end_of(bonds[b], end);
-                if (number_[at(i)] >= 0) continue;
-                number_[at(i)] = 0;
-                ghosts.push_back(i);
-            }
-        std::sort(own.begin(), own.end());
-        std::sort(ghosts.begin(), ghosts.begin() + static_cast<std::ptrdiff_t>(visiting));
+        const std::int32_t tile = tile_of_[at(t.first)], n = t.end - t.first;
+        Numbers &extra = extra_[at(tile)], ghosts;
+        const auto add_later_bonds = [&](std::int32_t i) {
+            for (const std::int32_t *q = bonds_.begin(i); q != bonds_.end(i); ++q)
+                if (*q >= t.end) extra.push_back(*q);
+        };
         t.first_site = size_of(a_.atom_of);
-        t.own_end = t.first_site + size_of(own);
-        for (const std::int32_t i : own) a_.place_of[at(i)] = add_site(t, i);
+        for (const std::int32_t *i = own_.begin(tile); i != own_.end(tile); ++i) {
+            a_.place_of[at(*i)] = add_site(t, *i);
+            add_later_bonds(*i);
+        }
+        t.own_end = size_of(a_.atom_of);
+        const auto add_ghost = [&](std::int32_t i) {
+            if (number_[at(i)] >= 0) return false;
+            number_[at(i)] = 0;
+            ghosts.push_back(i);
+            return true;
+        };
+        for (std::int32_t p = t.first; p < t.end; ++p)
+            for (int end = 0; end < 2; ++end)
+                if (add_ghost(end_of(p, end))) add_later_bonds(end_of(p, end));
+        std::sort(ghosts.begin(), ghosts.end());
+        visiting_.push_back(t.own_end - t.first_site + size_of(ghosts));
+        std::sort(extra.begin(), extra.end());
+        extra.erase(std::unique(extra.begin(), extra.end()), extra.end());
+        for (const std::int32_t q : extra)
+            for (int end = 0; end < 2; ++end) add_ghost(end_of(q, end));
         for (const std::int32_t i : ghosts) add_site(t, i);
         t.end_site = size_of(a_.atom_of);
-        visiting_.push_back(size_of(own) + static_cast<std::int32_t>(visiting));
-        for (std::size_t b = 0; b < bonds.size(); ++b) {
-            if (b == at(t.end - t.first)) pad(a_.from, 0), pad(a_.to, 0);
-            a_.from.push_back(4 * number_[at(end_of(bonds[b], 0))]);
-            a_.to.push_back(4 * number_[at(end_of(bonds[b], 1))]);
+        t.first_row = size_of(a_.from);
+        t.end_row = t.first_row + static_cast<std::int32_t>(in_fours(n) + in_fours(size_of(extra)));
+        for (int end = 0; end < 2; ++end) {
+            Numbers &to = end ? a_.to : a_.from;
+            to.resize(at(t.end_row));
+            std::int32_t *const own = to.data() + t.first_row, *const behind = own + in_fours(n);
+            for (std::int32_t p = 0; p < n; ++p) own[p] = 4 * number_[at(end_of(t.first + p, end))];
+            for (std::size_t b = 0; b < extra.size(); ++b) behind[b] = 4 * number_[at(end_of(extra[b], end))];
         }
-        pad(a_.from, 0), pad(a_.to, 0);
-        t.end_row = size_of(a_.from);
-        extra_.emplace_back(extra, bonds.end());
         for (std::int32_t site = t.first_site; site < t.end_site; ++site) number_[at(a_.atom_of[at(site)])] = -1;
         a_.list.most_sites = std::max(a_.list.most_sites, t.end_site - t.first_site);
         a_.list.most_rows = std::max(a_.list.most_rows, t.end_row - t.first_row);
-        a_.list.most_columns = std::max(a_.list.most_columns, t.end - t.first);
+        a_.list.most_columns = std::max(a_.list.most_columns, n);
     }
     std::int32_t add_site(const Tile &t, std::int32_t atom) {
         const std::int32_t site = size_of(a_.atom_of);
@@ -145,14 +164,12 @@ private:
     }
 
     void list_homes() {
-        for (const std::int32_t i : a_.atom_of) a_.home.push_back(a_.place_of[at(i)]);
+        a_.home.resize(a_.atom_of.size());
+        for (std::size_t site = 0; site < a_.home.size(); ++site) a_.home[site] = a_.place_of[at(a_.atom_of[site])];
         std::vector<std::vector<LdlPlan::Visit>> visits(a_.tile.size());
         for (std::size_t n = 0; n < a_.tile.size(); ++n)
-            for (std::int32_t site = a_.tile[n].own_end; site < a_.tile[n].first_site + visiting_[n]; ++site) {
-                std::size_t host = n;  // a tile before
-                while (a_.home[at(site)] < a_.tile[host].first_site) --host;
-                visits[host].push_back({a_.home[at(site)], site});
-            }
+            for (std::int32_t site = a_.tile[n].own_end; site < a_.tile[n].first_site + visiting_[n]; ++site)
+                visits[at(home_[at(a_.atom_of[at(site)])])].push_back({a_.home[at(site)], site});
         for (std::size_t n = 0; n < a_.tile.size(); ++n) {
             a_.tile[n].first_visit = size_of(a_.visit);
             a_.visit.insert(a_.visit.end(), visits[n].begin(), visits[n].end());
@@ -168,38 +185,43 @@ private:
         return side;
     }
 
+    void list_entries() {
+        for (Numbers *const list : {&a_.row, &a_.row_4, &a_.column_4, &a_.mass}) list->resize(at(a_.list.n_entries));
+        side_of_.assign(at(s_.n_bonds), -1);
+        row_of_.assign(at(s_.n_bonds), -1);
+        for (Tile &t : a_.tile) list_entries(t);
+    }
     void list_entries(Tile &t) {
-        const std::vector<std::int32_t> &extra = extra_[at(tile_of_[at(t.first)])];
+        const Numbers &extra = extra_[at(tile_of_[at(t.first)])];
         const std::int32_t own_rows = static_cast<std::int32_t>(in_fours(t.end - t.first)),
                            none = 2 * (t.end_site - t.first_site);
         for (std::size_t b = 0; b < extra.size(); ++b) row_of_[at(extra[b])] = own_rows + static_cast<std::int32_t>(b);
         const auto row_of = [&](std::int32_t p) { return p < t.end ? p - t.first : row_of_[at(p)]; };
         const std::int32_t first_side = a_.list.n_columns;
         t.first_run = size_of(a_.run);
+        std::size_t to = at(t.first_entry);
         for (std::int32_t p = t.first; p < t.end; ++p) {
             const std::int32_t n = start_[at(p) + 1] - start_[at(p)];
             if (size_of(a_.run) == t.first_run || a_.run.back().entries != n) a_.run.push_back({0, n});
             ++a_.run.back().columns;
-            for (std::int32_t e = start_[at(p)]; e < start_[at(p) + 1]; ++e) {
+            for (std::int32_t e = start_[at(p)]; e < start_[at(p) + 1]; ++e, ++to) {
                 const std::int32_t q = row_[at(e)], shared = shared_atom(p, q);
-                a_.row.push_back(q < t.end ? q : side_of(q, first_side, a_.list.n_columns, side_of_, a_.late));
-                a_.row_4.push_back(shared < 0 ? 0 : 4 * row_of(q));
-                a_.column_4.push_back(4 * (p - t.first));
-                a_.mass.push_back(shared < 0 ? none
-                                             : 2 * number_in(t, p, shared) +
-                                                   ((end_of(p, 1) == shared) == (end_of(q, 1) == shared) ? 1 : 0));
+                a_.row[to] = q < t.end ? q : side_of(q, first_side, a_.list.n_columns, side_of_, a_.late);
+                a_.column_4[to] = 4 * (p - t.first);
+                a_.mass[to] = none;
+                if (shared < 0) continue;
+                a_.row_4[to] = 4 * row_of(q);
+                a_.mass[to] =
+                    2 * number_in(t, p, shared) + ((end_of(p, 1) == shared) == (end_of(q, 1) == shared) ? 1 : 0);
             }
         }
         t.end_run = size_of(a_.run);
-        for (Numbers *list : {&a_.row, &a_.row_4, &a_.column_4}) pad(*list, 0);
-        pad(a_.mass, none);
+        for (; at(in_fours(t.end_entry)) > to; ++to) a_.mass[to] = none;
         for (const std::int32_t q : extra) row_of_[at(q)] = -1;
     }
     std::int32_t shared_atom(std::int32_t p, std::int32_t q) const {
-        for (int a = 0; a < 2; ++a)
-            for (int b = 0; b < 2; ++b)
-                if (end_of(p, a) == end_of(q, b)) return end_of(p, a);
-        return -1;
+        const std::int32_t i = end_of(p, 0), j = end_of(p, 1), k = end_of(q, 0), l = end_of(q, 1);
+        return i == k || i == l ? i : j == k || j == l ? j : -1;
     }
     // The number in a tile of an atom of its column p.
     std::int32_t number_in(const Tile &t, std::int32_t p, std::int32_t atom) const {
@@ -207,19 +229,48 @@ private:
         return (end_of(p, 0) == atom ? a_.from : a_.to)[row] / 4;
     }
 
-    void list_updates(Tile &t) {
-        const std::int32_t first_side = a_.list.n_entries;
-        t.first_update = static_cast<std::int64_t>(a_.update.size());
-        for (std::int32_t p = t.first; p < t.end; ++p) {
-            const std::int32_t first = start_[at(p)], end = start_[at(p) + 1];
-            for (std::int32_t i = first; i < end; ++i)
-                for (std::int32_t j = first; j < i; ++j) {
-                    const std::int32_t e = entry(row_[at(i)], row_[at(j)]);
-                    a_.update.push_back(
-                        row_[at(j)] < t.end ? e : side_of(e, first_side, a_.list.n_entries, side_of_, a_.late_entry));
-                }
+    void list_updates() {
+        std::int64_t n_updates = 0;
+        for (std::int32_t p = 0; p < s_.n_bonds; ++p) {
+            const std::int64_t n = start_[at(p) + 1] - start_[at(p)];
+            n_updates += n * (n - 1) / 2;
         }
+        a_.update.resize(at(n_updates));
+        side_of_.assign(at(a_.list.n_entries), -1);
+        std::int32_t *to = a_.update.data();
+        for (Tile &t : a_.tile) to = list_updates(t, to);
     }
+    std::int32_t *list_updates(Tile &t, std::int32_t *to) {
+        const std::int32_t first_side = a_.list.n_entries;
+        t.first_update = to - a_.update.data();
+        for (std::int32_t p = t.first; p < t.end; ++p) {
+            const std::int32_t n = start_[at(p) + 1] - start_[at(p)], *const row = row_.data() + start_[at(p)];
+            // The rows below row[j] are in its column, too.
+            for (std::int32_t j = 0; j + 1 < n; ++j) {
+                const Tile &of = a_.tile[at(tile_of_[at(row[j])])];
+                const std::int32_t *e = row_.data() + start_[at(row[j])],
+                                   *const end = row_.data() + start_[at(row[j]) + 1],
+                                   *const first = row_.data() + start_[at(of.first)];
+                for (std::int32_t i = j + 1; i < n; ++i) {
+                    e = find(e, end, row[i]);
+                    to[at(i) * at(i - 1) / 2 + at(j)] = of.first_entry + static_cast<std::int32_t>(e - first);
+                }
+            }
+            for (std::int32_t i = 1; n > 1 && row[n - 2] >= t.end && i < n; ++i)
+                for (std::int32_t j = 0; j < i; ++j)
+                    if (std::int32_t &e = to[at(i) * at(i - 1) / 2 + at(j)]; row[j] >= t.end)
+                        e = side_of(e, first_side, a_.list.n_entries, side_of_, a_.late_entry);
+            to += static_cast<std::ptrdiff_t>(n) * (n - 1) / 2;
+        }
+        return to;
+    }
+    // A number that is there, among those that ascend; mostly it is near.
+    static const std::int32_t *find(const std::int32_t *e, const std::int32_t *end, std::int32_t number) {
+        for (int near = 0; near < 8; ++near, ++e)
+            if (*e == number) return e;
+        return std::lower_bound(e, end, number);
+    }
+
     // Late columns and entries of all tiles, in their order, and columns of which not all is known in their tile.
     void list_sides() {
         const auto before = [](const LdlPlan::Late &a, const LdlPlan::Late &b) { return a.number < b.number; };
@@ -275,14 +326,17 @@ private:
 
     const EliminationPlan &s_;
     LdlArrays &a_;
-    Numbers start_, row_;  // of the factor's columns
-    Lists bonds_;          // columns of an atom
-    Rows extra_;           // columns that are a tile's extra bonds
-    Numbers number_;       // of an atom in the tile that is listed
-    Numbers visiting_;     // by tile, its atoms that its own bonds have
-    Numbers tile_of_;      // of a column
-    Numbers side_of_;      // the last one of a column, then of an entry
-    Numbers row_of_;       // of a column among a tile's extra bonds
+    Lists bonds_;                 // of an atom; by their columns as soon as these have an order
+    Numbers end_;                 // [][2] atoms of a column
+    Numbers start_, row_;         // of the factor's columns
+    Numbers subtree_end_;         // columns
+    Lists own_;                   // by tile, the atoms that are at home there
+    std::vector<Numbers> extra_;  // by tile, columns that are its extra bonds
+    Numbers number_;              // of an atom in the tile that is listed
+    Numbers visiting_;            // by tile, its atoms that its own bonds have
+    Numbers tile_of_, home_;      // tile of a column; of an atom
+    Numbers side_of_;             // the last one of a column, then of an entry
+    Numbers row_of_;              // of a column among a tile's extra bonds
 };
 
 }  // namespace
