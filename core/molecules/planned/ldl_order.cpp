@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <queue>
 #include <utility>
 #include <vector>
 
@@ -98,20 +97,57 @@ ListOrder in_subtrees(const Fill &fill) {
     return {std::move(order), {}};
 }
 
+// A set of numbers below n, of which the least can be taken: bits, and for each 64 of them one that says whether any is
+// there, and again.
+class LeastFirst {
+public:
+    explicit LeastFirst(std::size_t n) {
+        do level_.emplace_back(n = (n + 63) / 64);
+        while (n > 1);
+    }
+    bool empty() const { return level_.back()[0] == 0; }
+    void insert(std::size_t i) {
+        for (std::vector<std::uint64_t> &level : level_) {
+            level[i / 64] |= std::uint64_t{1} << i % 64;
+            i /= 64;
+        }
+    }
+    std::size_t take() {
+        std::size_t least = 0;
+        for (std::size_t l = level_.size(); l-- > 0;)
+            least = 64 * least + static_cast<std::size_t>(__builtin_ctzll(level_[l][least]));
+        std::size_t i = least;
+        for (std::vector<std::uint64_t> &level : level_) {
+            if (level[i / 64] &= level[i / 64] - 1) break;  // it was the least there, too
+            i /= 64;
+        }
+        return least;
+    }
+
+private:
+    std::vector<std::vector<std::uint64_t>> level_;
+};
+
 // That order in rounds of columns that do not wait for each other, so that a processor can work on them at once: those
 // farthest from the root among the next ones. Within a round by the number of entries. Each subtree by itself.
 class Rounds {
 public:
     Rounds(const Fill &fill, const Numbers &order)
-        : fill_(fill), order_(order), depth_(order_.size()), waits_for_(order_.size()), place_(order_.size()),
-          done_(order_.size()) {
-        for (std::size_t p = order_.size(); p-- > 0;) {
-            place_[at(order_[p])] = static_cast<std::int32_t>(p);
-            const std::int32_t k = order_[p], parent = parent_of(fill, k);
-            if (parent < 0) continue;
-            depth_[at(k)] = depth_[at(parent)] + 1;
-            ++waits_for_[at(parent)];
+        : fill_(fill), order_(order), waits_for_(order.size()), place_(order.size()), rank_(order.size()),
+          column_of_(order.size()), done_(order.size()), ready_(order.size()) {
+        Numbers depth(order.size()), start;
+        for (std::size_t p = order.size(); p-- > 0;) {
+            place_[at(order[p])] = static_cast<std::int32_t>(p);
+            const std::int32_t k = order[p], parent = parent_of(fill, k);
+            const std::int32_t d = parent < 0 ? 0 : depth[at(parent)] + 1;
+            if (parent >= 0) ++waits_for_[at(parent)];
+            depth[at(k)] = d;
+            if (start.size() <= at(d)) start.resize(at(d) + 1);
+            ++start[at(d)];
         }
+        std::int32_t n = 0;  // by depth, the deepest first, and of equally deep ones the first
+        for (std::size_t d = start.size(); d-- > 0;) n += std::exchange(start[d], n);
+        for (const std::int32_t k : order) column_of_[at(rank_[at(k)] = start[at(depth[at(k)])]++)] = k;
     }
 
     // Of the columns up to `end`, after those before.
@@ -120,10 +156,10 @@ public:
         while (made.size() < end) {
             advance(end);
             std::size_t n = 0;
-            for (; !ready_.empty() && n < most_in_round; ready_.pop()) {
-                const std::size_t place = static_cast<std::uint32_t>(~ready_.top());
-                round[n++] = order_[place];
-                done_[place] = 1;
+            while (n < most_in_round && !ready_.empty()) {
+                const std::int32_t k = column_of_[ready_.take()];
+                done_[at(place_[at(k)])] = 1;
+                round[n++] = k;
             }
             sort_short(round, round + n,
                        [&](std::int32_t a, std::int32_t b) { return entries_of(fill_, a) < entries_of(fill_, b); });
@@ -139,22 +175,19 @@ private:
     void advance(std::size_t end) {
         while (done_[first_]) ++first_;
         for (; seen_ < std::min(end, first_ + columns_ahead); ++seen_)
-            if (waits_for_[at(order_[seen_])] == 0) push(seen_);
-    }
-    void push(std::size_t place) {
-        ready_.push(static_cast<std::uint64_t>(depth_[at(order_[place])]) << 32 | static_cast<std::uint32_t>(~place));
+            if (waits_for_[at(order_[seen_])] == 0) ready_.insert(at(rank_[at(order_[seen_])]));
     }
     void release(std::int32_t k) {
-        if (k >= 0 && --waits_for_[at(k)] == 0 && at(place_[at(k)]) < seen_) push(at(place_[at(k)]));
+        if (k >= 0 && --waits_for_[at(k)] == 0 && at(place_[at(k)]) < seen_) ready_.insert(at(rank_[at(k)]));
     }
 
     const Fill &fill_;
     const Numbers &order_;
-    Numbers depth_, waits_for_, place_;  // by column
-    std::vector<unsigned char> done_;    // by place in order_
+    Numbers waits_for_, place_, rank_;  // by column
+    Numbers column_of_;                 // by rank
+    std::vector<unsigned char> done_;   // by place in order_
     std::size_t first_ = 0, seen_ = 0;
-    std::priority_queue<std::uint64_t>
-        ready_;  // depth, and by its complement the place: of equally deep ones the first
+    LeastFirst ready_;  // ranks
 };
 
 }  // namespace
