@@ -113,9 +113,7 @@ bool is_lowest_of_flat(const Partners &partners, std::int32_t i, double toleranc
 }  // namespace
 
 bool has_dependent_lengths(const holonomic::Shape &shape, const double *w, const double *lengths, double tolerance) {
-    if (shape.topology == Topology::chain || shape.topology == Topology::tree ||
-        (shape.topology == Topology::ring && shape.n_bonds > 3))
-        return false;
+    if (!shape.has_triangles) return false;  // of which groups and rings that are held in a plane consist
     const Partners partners(shape, w, lengths);
     std::int64_t steps = steps_for_rings(shape.n_bonds);
     for (std::int32_t i = 0; i < shape.n_atoms; ++i) {

@@ -12,6 +12,23 @@ constexpr const char *too_many =
     "is one too many: the atoms that it and the bonds around it join have fewer freedoms than bonds; "
     "hol_chains_add_rigid holds such a part by coordinates";
 
+// Whether an atom has four others beside it that have four bonds or are fixed: where none has, nothing would be left by
+// BondGraph::strip().
+bool may_be_left(const Draft &draft) {
+    std::vector<unsigned char> degree(draft.atoms.size(), 0), strong(draft.atoms.size(), 0);  // up to four
+    const auto count = [](unsigned char &n) { n = static_cast<unsigned char>(n + (n < 4)); };
+    for (const std::int32_t i : draft.pairs) count(degree[at(i)]);
+    for (std::size_t i = 0; i < degree.size(); ++i)
+        if (draft.fixed[i]) degree[i] = 4;
+    for (std::size_t k = 0; k < draft.bonds.size(); ++k) {
+        const std::size_t i = at(draft.pairs[2 * k]), j = at(draft.pairs[2 * k + 1]);
+        if (degree[i] < 4 || degree[j] < 4) continue;
+        if (count(strong[i]); strong[i] == 4 && !draft.fixed[i]) return true;
+        if (count(strong[j]); strong[j] == 4 && !draft.fixed[j]) return true;
+    }
+    return false;
+}
+
 // The molecule as a graph in which a fixed atom is one atom, however many bonds it ends.
 class BondGraph {
 public:
@@ -170,6 +187,7 @@ void check_count(const BondList &list, const Draft &draft) {
     const std::int64_t n_fixed = std::count(draft.fixed.begin(), draft.fixed.end(), 1);
     // Five atoms with ten bonds have six independent cycles; no part with fewer is overfull, unless atoms are fixed.
     if (n_bonds - n_atoms < 5 && n_fixed < 4) return;
+    if (!may_be_left(draft)) return;
     BondGraph graph(draft, list.bonds_round);
     if (!graph.strip()) return;
     std::int64_t bond = graph.overfull();

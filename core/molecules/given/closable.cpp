@@ -1,8 +1,6 @@
 #include "core/molecules/given/closable.hpp"
-#include "core/index.hpp"
 
-#include <algorithm>
-#include <vector>
+#include "core/molecules/given/triangles.hpp"
 
 namespace holonomic {
 
@@ -27,31 +25,19 @@ bool find_in_ring(const Shape &shape, const double *length, Unclosable *found) {
 }  // namespace
 
 bool find_unclosable(const Shape &shape, const double *length, Unclosable *found) {
-    if (shape.topology == Topology::chain || shape.topology == Topology::tree) return false;
     if (shape.topology == Topology::ring) return find_in_ring(shape, length, found);
-    // Bonds of each atom to higher ones. The pairs ascend, so that these follow each other.
-    std::vector<std::int32_t> start(at(shape.n_atoms) + 1, 0), marked(at(shape.n_atoms), -1);
-    for (std::int32_t k = 0; k < shape.n_bonds; ++k) ++start[at(shape.i(k)) + 1];
-    for (std::int32_t i = 0; i < shape.n_atoms; ++i) start[at(i) + 1] += start[at(i)];
-    const auto end_of = [&](std::int32_t bond) { return shape.j(bond); };
-    for (std::int32_t i = 0; i < shape.n_atoms; ++i) {
-        const std::int32_t first = start[at(i)], end = start[at(i) + 1];
-        if (end - first < 2) continue;
-        for (std::int32_t k = first; k < end; ++k) marked[at(end_of(k))] = k;
-        for (std::int32_t k = first; k < end; ++k)
-            for (std::int32_t l = start[at(end_of(k))]; l < start[at(end_of(k)) + 1]; ++l) {
-                const std::int32_t m = marked[at(end_of(l))];
-                if (m < first) continue;
-                // Atom i with bonds k and m to the ends of bond l.
-                const std::int32_t sides[3] = {k, l, m}, corners[3] = {end_of(l), i, end_of(k)};
-                const double sum = length[k] + length[l] + length[m];
-                for (int s = 0; s < 3; ++s) {
-                    *found = {sides[s], corners[s], length[sides[s]], sum - length[sides[s]]};
-                    if (is_longer(found->length, found->others)) return true;
-                }
+    if (!shape.has_triangles) return false;
+    return any_triangle(
+        shape.n_atoms, shape.n_bonds, [&](std::int32_t k, int end) { return end ? shape.j(k) : shape.i(k); },
+        [&](std::int32_t i, std::int32_t k, std::int32_t l, std::int32_t m) {
+            const std::int32_t sides[3] = {k, l, m}, corners[3] = {shape.j(l), i, shape.j(k)};
+            const double sum = length[k] + length[l] + length[m];
+            for (int s = 0; s < 3; ++s) {
+                *found = {sides[s], corners[s], length[sides[s]], sum - length[sides[s]]};
+                if (is_longer(found->length, found->others)) return true;
             }
-    }
-    return false;
+            return false;
+        });
 }
 
 Error unclosable_error(const Unclosable &found, const Name *atoms, std::int64_t bond, int base) {

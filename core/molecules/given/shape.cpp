@@ -5,6 +5,7 @@
 
 #include "core/molecules/given/hash.hpp"
 #include "core/molecules/given/memory_limit.hpp"
+#include "core/molecules/given/triangles.hpp"
 
 namespace holonomic {
 
@@ -20,7 +21,6 @@ bool is(const Shape &shape, std::int32_t n_atoms, std::int32_t n_bonds, const st
 }
 
 std::vector<std::int32_t> spanning_walk(std::int32_t n_atoms, std::int32_t n_bonds, const std::int32_t *pairs) {
-    const auto at = [](std::int32_t i) { return static_cast<std::size_t>(i); };
     std::vector<std::int32_t> start(at(n_atoms) + 1, 0), arms(2 * at(n_bonds)), walk, stack{0};
     for (std::size_t e = 0; e < 2 * at(n_bonds); ++e) ++start[at(pairs[e]) + 1];
     for (std::int32_t i = 0; i < n_atoms; ++i) start[at(i) + 1] += start[at(i)];
@@ -54,15 +54,22 @@ std::int32_t Shapes::find(Topology topology, std::int32_t n_atoms, std::int32_t 
                           EliminationWork *work) {
     if (likely >= 0 && is((*this)[likely], n_atoms, n_bonds, pairs, fixed)) return likely;
     std::uint64_t hash = mix(static_cast<std::uint64_t>(n_bonds), static_cast<std::uint64_t>(n_atoms));
-    for (std::int64_t k = 0; k < 2 * std::int64_t{n_bonds}; ++k) hash = mix(hash, static_cast<std::uint64_t>(pairs[k]));
-    for (std::int32_t i = 0; i < n_atoms; ++i) hash = mix(hash, static_cast<std::uint64_t>(fixed[i]));
+    for (std::int64_t k = 0; k < n_bonds; ++k)
+        hash = mix(hash, static_cast<std::uint64_t>(pairs[2 * k]) << 32 | static_cast<std::uint32_t>(pairs[2 * k + 1]));
+    for (std::int32_t i = 0; i < n_atoms; ++i)
+        if (fixed[i]) hash = mix(hash, static_cast<std::uint64_t>(i));
     const auto candidates = by_hash_.equal_range(hash);
     for (auto it = candidates.first; it != candidates.second; ++it)
         if (is((*this)[it->second], n_atoms, n_bonds, pairs, fixed)) return it->second;
 
     if (n_bonds > most_bytes / bytes_of_shape_bond) throw TooMuchMemory(n_bonds * bytes_of_shape_bond);
-    Shape shape{topology, n_atoms, n_bonds, {}, {}};
-    if (n_bonds >= n_atoms) shape.round_cycles = spanning_walk(n_atoms, n_bonds, pairs);
+    Shape shape{topology, n_atoms, n_bonds, false, {}, {}};
+    if (n_bonds >= n_atoms) {
+        shape.has_triangles = any_triangle(
+            n_atoms, n_bonds, [pairs](std::int32_t k, int end) { return pairs[2 * at(k) + at(end)]; },
+            [](auto...) { return true; });
+        shape.round_cycles = spanning_walk(n_atoms, n_bonds, pairs);
+    }
     shape.elimination = make_elimination_plan(n_atoms, n_bonds, pairs, fixed, most_bytes, work);
     shapes_.push_back(std::move(shape));
     try {

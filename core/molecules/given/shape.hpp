@@ -16,6 +16,7 @@ enum class Topology { chain = 0, tree = 1, ring = 2, triangle = 3, other = 4 };
 struct Shape {
     Topology topology;
     std::int32_t n_atoms, n_bonds;
+    bool has_triangles;                                  // three atoms that are bonded to each other, or more
     std::vector<std::int32_t> round_cycles;              // with cycles, the steps of walk(): k, or ~k if it goes back
     std::shared_ptr<const EliminationPlan> elimination;  // copies of the set share it
     // Of a bond, local atoms, the lower one first.
