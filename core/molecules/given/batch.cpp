@@ -199,7 +199,10 @@ void Batch::append_found(const FoundMolecules &found, const BondList &list, cons
         if (!found.fixed[i] && chains_.use_.used(found.atoms[i])) throw in_use(chains_, found.atoms[i]);
     found_ = &found;
     // All at once: where bonds stand in the list in any order, the processor then waits for many of them at a time.
-    std::vector<double> in_order(found.bonds.size());
+    std::vector<double> in_order;
+    const bool as_given = n_lengths == n_bonds && found.molecules.size() == 1 && found.bonds[0] == 0 &&
+                          ascend(found.bonds.data(), found.molecules[0].n_bonds);
+    if (!as_given) in_order.resize(found.bonds.size());
     for (std::size_t k = 0; k < in_order.size(); ++k)
         in_order[k] = lengths[n_lengths == n_bonds ? found.bonds[k] : found.bonds[k] % n_lengths];
     std::int32_t last_shape = linear;
@@ -211,7 +214,7 @@ void Batch::append_found(const FoundMolecules &found, const BondList &list, cons
         std::int32_t shape = linear;
         if (molecule.topology != Topology::chain) shape = last_shape = shape_of(found, m, last_shape);
         note_direction(found, molecule, list);
-        append_one(found, m, shape, &in_order[at(molecule.first_bond)]);
+        append_one(found, m, shape, as_given ? lengths : &in_order[at(molecule.first_bond)]);
         if (molecule.n_fixed == 0) continue;
         for (std::size_t i = first; i < first + n_atoms; ++i)
             if (found.fixed[i]) fixed_.push_back(found.atoms[i]);

@@ -52,11 +52,15 @@ public:
     void join(std::int32_t i, std::int32_t j) {
         i = of(i);
         j = of(j);
-        if (i != j) parent_[at(std::max(i, j))] = std::min(i, j);
+        if (i == j) return;
+        parent_[at(std::max(i, j))] = std::min(i, j);
+        ++n_joined_;
     }
+    bool are_one() const { return n_joined_ + 1 == parent_.size(); }
 
 private:
     Numbers parent_;
+    std::size_t n_joined_ = 0;
 };
 
 // Elements in the order of their molecules, and within a molecule in their own: start[m] is where molecule m begins.
@@ -86,11 +90,17 @@ public:
 
     FoundMolecules find() {
         divide();
+        Recogniser recognise(list_);
+        if (is_one_) {
+            take_all(recognise.draft());
+            recognise.add_to(found_);
+            return std::move(found_);
+        }
         found_.atoms.reserve(atoms_.size());
+        found_.fixed.reserve(atoms_.size());
         found_.bonds.reserve(bonds_.size());
         found_.pairs.reserve(2 * bonds_.size());
         found_.molecules.reserve(n_molecules_);
-        Recogniser recognise(list_);
         Numbers local(at(number_.size()));
         for (std::size_t m = 0; m < n_molecules_; ++m) {
             Draft &draft = recognise.draft();
@@ -153,6 +163,8 @@ private:
         for (std::size_t k = 0; k < n_bonds; ++k)
             if (!any_fixed_ || (!fixed_[at(end_[2 * k])] && !fixed_[at(end_[2 * k + 1])]))
                 sets.join(end_[2 * k], end_[2 * k + 1]);
+        is_one_ = !any_fixed_ && sets.are_one();
+        if (is_one_) return;
         Numbers molecule(at(number_.size()), -1), of_bond(n_bonds, -1);
         for (std::int32_t i = 0; i < number_.size(); ++i) {
             if (fixed_[at(i)]) continue;
@@ -168,6 +180,16 @@ private:
         }
         bonds_ = sorted_by_molecule(of_bond, n_molecules_, bond_start_);
         atoms_ = sorted_by_molecule(molecule, n_molecules_, atom_start_);
+    }
+
+    // Where all is one molecule.
+    void take_all(Draft &draft) {
+        draft.atoms.resize(at(number_.size()));
+        for (std::int32_t i = 0; i < number_.size(); ++i) draft.atoms[at(i)] = number_.atom(i);
+        draft.fixed.swap(fixed_);
+        draft.bonds.resize(end_.size() / 2);
+        for (std::size_t p = 0; p < draft.bonds.size(); ++p) draft.bonds[p] = bond_at(p);
+        draft.pairs.swap(end_);
     }
 
     // The molecule's atoms, ascending, and its bonds as the list has them.
@@ -232,7 +254,7 @@ private:
     Numbers end_;      // short numbers of the atoms of each bond, the bonds in an order of our own:
     Numbers bond_at_;  // their numbers in the list; empty if that is their order
     std::vector<unsigned char> fixed_;
-    bool any_fixed_ = false;
+    bool any_fixed_ = false, is_one_ = false;
     std::size_t n_molecules_ = 0;
     Numbers bonds_, bond_start_, atoms_, atom_start_;  // of each molecule
     FoundMolecules found_;

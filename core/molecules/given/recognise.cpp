@@ -8,6 +8,17 @@
 
 namespace holonomic {
 
+namespace {
+
+// A list that has no memory yet takes that of the draft, which is of the only molecule.
+template <class T>
+void append(std::vector<T> &list, std::vector<T> &draft) {
+    if (list.capacity() == 0) return list.swap(draft);
+    list.insert(list.end(), draft.begin(), draft.end());
+}
+
+}  // namespace
+
 void Recogniser::sort_few() {
     for (std::size_t k = 1; k < draft_.bonds.size(); ++k) {
         const std::int64_t bond = draft_.bonds[k];
@@ -118,10 +129,10 @@ void Recogniser::add_to(FoundMolecules &found) {
                                static_cast<std::int32_t>(std::count(draft_.fixed.begin(), draft_.fixed.end(), 1)),
                                static_cast<std::int64_t>(found.atoms.size()),
                                static_cast<std::int64_t>(found.bonds.size())});
-    found.atoms.insert(found.atoms.end(), draft_.atoms.begin(), draft_.atoms.end());
-    found.fixed.insert(found.fixed.end(), draft_.fixed.begin(), draft_.fixed.end());
-    found.bonds.insert(found.bonds.end(), draft_.bonds.begin(), draft_.bonds.end());
-    found.pairs.insert(found.pairs.end(), draft_.pairs.begin(), draft_.pairs.end());
+    append(found.atoms, draft_.atoms);
+    append(found.fixed, draft_.fixed);
+    append(found.bonds, draft_.bonds);
+    append(found.pairs, draft_.pairs);
 }
 
 }  // namespace holonomic

@@ -19,6 +19,23 @@ struct Junction {
         form;  // numbers of atoms, bonds and overlaps; the ends of bonds; where overlaps begin; which atoms are fixed
 };
 
+std::int32_t lower_atom(const EliminationPlan &s, std::int32_t bond) {
+    return std::min(s.atom_i[bond], s.atom_j[bond]);
+}
+bool joins_next(const EliminationPlan &s, std::int32_t bond) {
+    return std::max(s.atom_i[bond], s.atom_j[bond]) == lower_atom(s, bond) + 1;
+}
+
+// Whether so many bonds stand one behind the other, whatever else their atoms have.
+bool may_have_path(const EliminationPlan &s) {
+    std::int32_t n = 0;
+    for (std::int32_t k = 0; k < s.n_bonds && n < PathPlan::shortest_path; ++k) {
+        const bool follows = n > 0 && lower_atom(s, k) == lower_atom(s, k - 1) + 1;
+        n = !joins_next(s, k) ? 0 : follows ? n + 1 : 1;
+    }
+    return n >= PathPlan::shortest_path;
+}
+
 class PathMaker {
 public:
     PathMaker(const EliminationPlan &s, PathArrays &a)
@@ -36,10 +53,8 @@ public:
 
 private:
     std::int32_t end_of(std::int32_t bond, int end) const { return (end ? s_.atom_j : s_.atom_i)[bond]; }
-    std::int32_t lower(std::int32_t bond) const { return std::min(s_.atom_i[bond], s_.atom_j[bond]); }
-    bool is_step(std::int32_t bond) const {
-        return bond < s_.n_bonds && std::max(s_.atom_i[bond], s_.atom_j[bond]) == lower(bond) + 1;
-    }
+    std::int32_t lower(std::int32_t bond) const { return lower_atom(s_, bond); }
+    bool is_step(std::int32_t bond) const { return bond < s_.n_bonds && joins_next(s_, bond); }
 
     void find_paths() {
         for (std::int32_t first = 0, end; first < s_.n_bonds; first = end) {
@@ -201,6 +216,7 @@ private:
 }  // namespace
 
 bool make_path_plan(const EliminationPlan &s, PathArrays &arrays) {
+    if (!may_have_path(s)) return false;
     if (PathMaker(s, arrays).make()) return true;
     arrays = PathArrays();
     return false;
