@@ -15,6 +15,17 @@ void check_count(std::int64_t n) {
         throw std::length_error("the elimination of a molecule fills its matrix");
 }
 
+// Sorts numbers that are mostly a few: std::sort calls memmove for each.
+void sort_short(std::int32_t *first, std::int32_t *end) {
+    if (end - first > 32) return std::sort(first, end);
+    for (std::int32_t *i = first; i < end; ++i) {
+        const std::int32_t x = *i;
+        std::int32_t *to = i;
+        for (; to > first && to[-1] > x; --to) *to = to[-1];
+        *to = x;
+    }
+}
+
 // Rows by degree, in doubly linked lists: taking the first of the least degree and moving a row cost nothing.
 class Degrees {
 public:

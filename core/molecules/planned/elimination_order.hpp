@@ -1,7 +1,6 @@
 // The order of elimination of a sparse symmetric matrix, and where its factor is filled.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <new>
@@ -21,21 +20,6 @@ constexpr std::int64_t no_limit = std::numeric_limits<std::int64_t>::max();
 // What a column with so many entries takes: the products that it gives to others, in two lists, and its entries there
 // and in the scratch of the solvers.
 constexpr std::int64_t bytes_of_column(std::int64_t entries) { return 4 * entries * (entries - 1) + 128 * entries; }
-
-// Sorts numbers that are mostly a few, equal ones as they stand: std::sort calls memmove for each.
-template <class Before>
-void sort_short(std::int32_t *first, std::int32_t *end, const Before &before) {
-    if (end - first > 32) return std::stable_sort(first, end, before);
-    for (std::int32_t *i = first; i < end; ++i) {
-        const std::int32_t x = *i;
-        std::int32_t *to = i;
-        for (; to > first && before(x, to[-1]); --to) *to = to[-1];
-        *to = x;
-    }
-}
-inline void sort_short(std::int32_t *first, std::int32_t *end) {
-    sort_short(first, end, [](std::int32_t a, std::int32_t b) { return a < b; });
-}
 
 // Minimum degree: the row with the fewest neighbours first, its neighbours then being coupled to each other.
 // `neighbours` of each row without itself; they are used up. Of rows of equal degree the one that got it last is taken,

@@ -196,7 +196,7 @@ private:
         const std::int32_t own_rows = static_cast<std::int32_t>(in_fours(t.end - t.first)),
                            none = 2 * (t.end_site - t.first_site);
         for (std::size_t b = 0; b < extra.size(); ++b) row_of_[at(extra[b])] = own_rows + static_cast<std::int32_t>(b);
-        const auto row_of = [&](std::int32_t p) { return p < t.end ? p - t.first : row_of_[at(p)]; };
+        const std::int32_t *const from = a_.from.data() + t.first_row, *const to_atom = a_.to.data() + t.first_row;
         const std::int32_t first_side = a_.list.n_columns;
         t.first_run = size_of(a_.run);
         std::size_t to = at(t.first_entry);
@@ -204,31 +204,22 @@ private:
             const std::int32_t n = start_[at(p) + 1] - start_[at(p)];
             if (size_of(a_.run) == t.first_run || a_.run.back().entries != n) a_.run.push_back({0, n});
             ++a_.run.back().columns;
+            const std::int32_t i = from[p - t.first], j = to_atom[p - t.first];
             for (std::int32_t e = start_[at(p)]; e < start_[at(p) + 1]; ++e, ++to) {
-                const std::int32_t q = row_[at(e)], shared = shared_atom(p, q);
+                const std::int32_t q = row_[at(e)], row = q < t.end ? q - t.first : row_of_[at(q)];
                 a_.row[to] = q < t.end ? q : side_of(q, first_side, a_.list.n_columns, side_of_, a_.late);
                 a_.column_4[to] = 4 * (p - t.first);
-                a_.mass[to] = none;
-                if (shared < 0) continue;
-                a_.row_4[to] = 4 * row_of(q);
-                a_.mass[to] =
-                    2 * number_in(t, p, shared) + ((end_of(p, 1) == shared) == (end_of(q, 1) == shared) ? 1 : 0);
+                // Both point to or from the atom that they share; or one to it, one from it; or none is shared.
+                const std::int32_t k = row < 0 ? -1 : from[row], l = row < 0 ? -1 : to_atom[row];
+                const bool same = (i == k) | (j == l), shares = same | (i == l) | (j == k);
+                a_.row_4[to] = shares ? 4 * row : 0;
+                a_.mass[to] = shares ? ((i == k) | (i == l) ? i : j) / 2 + same : none;
             }
         }
         t.end_run = size_of(a_.run);
         for (; at(in_fours(t.end_entry)) > to; ++to) a_.mass[to] = none;
         for (const std::int32_t q : extra) row_of_[at(q)] = -1;
     }
-    std::int32_t shared_atom(std::int32_t p, std::int32_t q) const {
-        const std::int32_t i = end_of(p, 0), j = end_of(p, 1), k = end_of(q, 0), l = end_of(q, 1);
-        return i == k || i == l ? i : j == k || j == l ? j : -1;
-    }
-    // The number in a tile of an atom of its column p.
-    std::int32_t number_in(const Tile &t, std::int32_t p, std::int32_t atom) const {
-        const std::size_t row = at(t.first_row + p - t.first);
-        return (end_of(p, 0) == atom ? a_.from : a_.to)[row] / 4;
-    }
-
     void list_updates() {
         std::int64_t n_updates = 0;
         for (std::int32_t p = 0; p < s_.n_bonds; ++p) {
@@ -237,6 +228,7 @@ private:
         }
         a_.update.resize(at(n_updates));
         side_of_.assign(at(a_.list.n_entries), -1);
+        for (const Tile &t : a_.tile) entries_before_.push_back(t.first_entry - start_[at(t.first)]);
         std::int32_t *to = a_.update.data();
         for (Tile &t : a_.tile) to = list_updates(t, to);
     }
@@ -247,13 +239,12 @@ private:
             const std::int32_t n = start_[at(p) + 1] - start_[at(p)], *const row = row_.data() + start_[at(p)];
             // The rows below row[j] are in its column, too.
             for (std::int32_t j = 0; j + 1 < n; ++j) {
-                const Tile &of = a_.tile[at(tile_of_[at(row[j])])];
-                const std::int32_t *e = row_.data() + start_[at(row[j])],
-                                   *const end = row_.data() + start_[at(row[j]) + 1],
-                                   *const first = row_.data() + start_[at(of.first)];
+                const std::int32_t column = row[j], before = entries_before_[at(tile_of_[at(column)])];
+                const std::int32_t *e = row_.data() + start_[at(column)], *const end =
+                                                                              row_.data() + start_[at(column) + 1];
                 for (std::int32_t i = j + 1; i < n; ++i) {
                     e = find(e, end, row[i]);
-                    to[at(i) * at(i - 1) / 2 + at(j)] = of.first_entry + static_cast<std::int32_t>(e - first);
+                    to[at(i) * at(i - 1) / 2 + at(j)] = before + static_cast<std::int32_t>(e - row_.data());
                 }
             }
             for (std::int32_t i = 1; n > 1 && row[n - 2] >= t.end && i < n; ++i)
@@ -333,6 +324,7 @@ private:
     Lists own_;                   // by tile, the atoms that are at home there
     std::vector<Numbers> extra_;  // by tile, columns that are its extra bonds
     Numbers number_;              // of an atom in the tile that is listed
+    Numbers entries_before_;      // by tile, inert ones
     Numbers visiting_;            // by tile, its atoms that its own bonds have
     Numbers tile_of_, home_;      // tile of a column; of an atom
     Numbers side_of_;             // the last one of a column, then of an entry
