@@ -38,6 +38,7 @@ void EliminationPlanner::strip() {
     Numbers &degree = m_.degree, &leaves = m_.stack;
     degree.resize(at(s_.n_atoms));
     leaves.clear();
+    leaves.reserve(at(s_.n_atoms));
     upper_bond_.assign(at(s_.n_atoms), -1);
     const bool is_tree = s_.n_bonds == s_.n_atoms - 1, centred = is_tree && s_.n_bonds <= largest_in_lanes;
     std::int32_t root = -1;
@@ -90,7 +91,10 @@ void EliminationPlanner::number_trees() {
             if (is_child(*k, i)) to.push_back(other_end(*k, i));
     };
     order.clear();
+    order.reserve(at(s_.n_tree));
     left.clear();
+    m_.atom_of.reserve(at(s_.n_atoms));
+    m_.bond_of.reserve(at(s_.n_bonds));
     for (std::int32_t i = 0; i < s_.n_atoms; ++i)
         if (upper_bond_[at(i)] < 0) add_children(i, s_.n_bonds <= largest_in_lanes ? order : left);
     for (std::size_t next = 0; next < order.size(); ++next) add_children(order[next], order);
@@ -184,6 +188,8 @@ void EliminationPlanner::invert_numbers() {
     for (std::int32_t k = 0; k < s_.n_tree; ++k)
         m_.parent[at(k)] = m_.slot_of[at(other_end(m_.bond_of[at(k)], m_.atom_of[at(k)]))];
     const bool round = s_.type == EliminationPlan::ring || s_.type == EliminationPlan::triangle;
+    m_.from.reserve(at(s_.n_core));
+    m_.to.reserve(at(s_.n_core));
     for (std::int32_t p = 0; p < s_.n_core; ++p) {
         const std::int32_t k = m_.bond_of[at(s_.n_tree + p)];
         const std::int32_t i = m_.slot_of[at(m_.atom_i[at(k)])], j = m_.slot_of[at(m_.atom_j[at(k)])];

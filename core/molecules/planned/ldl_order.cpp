@@ -205,6 +205,8 @@ private:
 
 Numbers bonds_from_the_leaves(const EliminationPlan &s, const Lists &bonds) {
     Numbers order, leaves, left(at(s.n_atoms));
+    order.reserve(at(s.n_bonds));
+    leaves.reserve(at(s.n_atoms));
     std::vector<unsigned char> gone(at(s.n_bonds));
     for (std::int32_t i = 0; i < s.n_atoms; ++i)
         if ((left[at(i)] = bonds.size(i)) == 1) leaves.push_back(i);
@@ -229,6 +231,7 @@ Numbers bonds_from_the_leaves(const EliminationPlan &s, const Lists &bonds) {
 ListOrder order_of_list(const Fill &fill) {
     const ListOrder order = in_subtrees(fill);
     ListOrder made = {{}, order.subtree_end};
+    made.column.reserve(order.column.size());
     Rounds rounds(fill, order.column);
     for (const std::int32_t end : order.subtree_end) rounds.make(at(end), made.column);
     rounds.make(order.column.size(), made.column);

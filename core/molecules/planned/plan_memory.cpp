@@ -49,7 +49,7 @@ void pack(EliminationPlan &s, EliminationWork &work) {
     if (s.n_bonds > largest_in_lanes) {
         for (Numbers *const list :
              {&work.bonds.start, &work.bonds.item, &work.upper_bond, &work.degree, &work.stack, &work.next})
-            *list = {};
+            Numbers().swap(*list);
     }
     std::size_t bytes = 0;
     for_arrays(s, work, [&](auto &, const auto &list) { bytes += list.size() * sizeof list[0]; });
@@ -59,7 +59,7 @@ void pack(EliminationPlan &s, EliminationWork &work) {
         pointer = reinterpret_cast<std::remove_reference_t<decltype(pointer)>>(next);
         if (!list.empty()) std::memcpy(next, list.data(), list.size() * sizeof list[0]);
         next += list.size() * sizeof list[0];
-        if (s.n_bonds > largest_in_lanes) list = {};
+        if (s.n_bonds > largest_in_lanes) std::remove_reference_t<decltype(list)>().swap(list);
     });
 }
 
