@@ -11,7 +11,7 @@ namespace holonomic {
 inline bool adds(hol_mode mode) {
     if (mode != HOL_WRITE && mode != HOL_ADD)
         throw make_error(Status::value, "mode is %d; it must be HOL_WRITE or HOL_ADD", static_cast<int>(mode));
-    return mode == HOL_ADD;
+    return mode != HOL_WRITE;
 }
 
 }  // namespace holonomic

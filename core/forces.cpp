@@ -137,7 +137,9 @@ void right_hand_sides(const Chains &chains, const Box &box, const double *L, con
     }
 }
 
-void forces(const Chains &chains, ForcesCall &call, double *virial) {
+namespace {
+
+[[gnu::noinline]] void forces_of_all(const Chains &chains, ForcesCall &call, double *virial) {
     with_outcomes(chains, [&] {
         rigid::over_all(
             chains, call.add ? nullptr : &call.g, virial, [&](double *to) { forces_of_bonds(chains, call, to); },
@@ -145,6 +147,13 @@ void forces(const Chains &chains, ForcesCall &call, double *virial) {
                 rigid::forces(chains, call.r, call.v, call.f, call.lambda, call.tension, call.g, call.add, to);
             });
     });
+}
+
+}  // namespace
+
+void forces(const Chains &chains, ForcesCall &call, double *virial) {
+    if (__builtin_expect(chains.is_plain(), 1)) return forces_of_bonds(chains, call, virial);
+    forces_of_all(chains, call, virial);
 }
 
 }  // namespace holonomic

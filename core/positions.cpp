@@ -179,17 +179,18 @@ void project_from(const Chains &chains, PositionsCall &call, const Reference *re
     project_from(chains, call, &reference, virial, report);
 }
 
-}  // namespace
+bool compares(const Chains &chains, const Report *report) {
+    return chains.wants_fit() || (report && chains.checks() == Checks::never);
+}
 
-void project_positions(const Chains &chains, PositionsCall &call, const AtomArray *bonds, double *virial,
-                       Report *report, ReferenceError &reference_error) {
+[[gnu::noinline]] void project_all(const Chains &chains, PositionsCall &call, const AtomArray *bonds, double *virial,
+                                   Report *report, ReferenceError &reference_error) {
     if (bonds)
         rigid::refuse_bodies(chains,
                              "rigid bodies have no bond vectors to project along: hol_project_positions takes "
                              "reference positions");
     with_outcomes(chains, [&] {
-        if (chains.wants_fit() || (report && chains.checks() == Checks::never))
-            compare(chains, call, bonds, reference_error);
+        if (compares(chains, report)) compare(chains, call, bonds, reference_error);
         rigid::over_all(
             chains, nullptr, virial,
             [&](double *to) {
@@ -200,6 +201,15 @@ void project_positions(const Chains &chains, PositionsCall &call, const AtomArra
                 rigid::project_positions(chains, call.r_ref, call.r, call.v, call.dt, call.lambda, to, report);
             });
     });
+}
+
+}  // namespace
+
+void project_positions(const Chains &chains, PositionsCall &call, const AtomArray *bonds, double *virial,
+                       Report *report, ReferenceError &reference_error) {
+    if (__builtin_expect(!bonds && chains.is_plain() && !compares(chains, report), 1))
+        return project_from(chains, call, nullptr, virial, report);
+    project_all(chains, call, bonds, virial, report, reference_error);
 }
 
 }  // namespace holonomic

@@ -91,14 +91,19 @@ void project_velocities_of_bonds(const Chains &chains, VelocitiesCall &call, dou
     if (virial) write_virial(tally, virial);
 }
 
-}  // namespace
-
-void project_velocities(const Chains &chains, VelocitiesCall &call, double *virial) {
+[[gnu::noinline]] void project_velocities_of_all(const Chains &chains, VelocitiesCall &call, double *virial) {
     with_outcomes(chains, [&] {
         rigid::over_all(
             chains, nullptr, virial, [&](double *to) { project_velocities_of_bonds(chains, call, to); },
             [&](double *to) { rigid::project_velocities(chains, call.r, call.v, call.lambda, to); });
     });
+}
+
+}  // namespace
+
+void project_velocities(const Chains &chains, VelocitiesCall &call, double *virial) {
+    if (__builtin_expect(chains.is_plain(), 1)) return project_velocities_of_bonds(chains, call, virial);
+    project_velocities_of_all(chains, call, virial);
 }
 
 }  // namespace holonomic

@@ -95,10 +95,10 @@ public:
     DefaultEnvironment() {
         read_environment(before_);
         was_default_ = is_default(before_);
-        if (!was_default_) begin();
+        if (__builtin_expect(!was_default_, 0)) begin();
     }
     ~DefaultEnvironment() {
-        if (was_default_)
+        if (__builtin_expect(was_default_, 1))
             set_flags(before_);
         else
             end();

@@ -67,6 +67,9 @@ public:
                              std::int64_t n_bonds, const std::int64_t *pairs, const double *lengths);
     // Molecules with rigid bodies, or null: there are none. What is asked of the others below does not count these.
     const rigid::Bodies *bodies() const { return bodies_.get(); }
+    // Nothing but molecules of bonds, and nobody asks for outcomes: a verb is no more than its part for these. It asks
+    // so first: what is set up for others would be felt in calls on one molecule.
+    bool is_plain() const { return !keeps_outcomes && !bodies_; }
 
     // values.cpp. On an Error or std::bad_alloc nothing is changed.
     void set_lengths(const double *lengths);
