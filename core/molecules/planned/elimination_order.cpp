@@ -111,17 +111,18 @@ Numbers minimum_degree(Lists neighbours, Ties ties, std::int64_t most_bytes) {
     for (std::int32_t i = n; i-- > 0;) degrees.insert(i, at(rows.size(i)));
     Rows order(at(n)), seen(at(n), -1), front;
     std::int64_t bytes = 0;
-    for (std::int32_t &k : order) {
-        k = degrees.take_least();
+    for (std::int32_t &place : order) {
+        const std::int32_t k = place = degrees.take_least();
         front.assign(rows.begin(k), rows.begin(k) + rows.size(k));
         bytes += bytes_of_column(rows.size(k));
         if (bytes > most_bytes) throw TooMuchMemory(bytes);
         for (const std::int32_t i : front) {
             // The neighbours of i without k, and all others of k.
             std::int32_t *const mine = rows.begin(i);
+            const std::int32_t size = rows.size(i);
             std::int32_t left = 0;
             seen[at(i)] = i;
-            for (std::int32_t l = 0; l < rows.size(i); ++l) {
+            for (std::int32_t l = 0; l < size; ++l) {
                 const std::int32_t j = mine[l];
                 seen[at(j)] = i;
                 mine[left] = j;

@@ -99,30 +99,33 @@ ListOrder in_subtrees(const Fill &fill) {
 class LeastFirst {
 public:
     explicit LeastFirst(std::size_t n) {
-        do level_.emplace_back(n = (n + 63) / 64);
-        while (n > 1);
+        std::size_t words = 0;
+        do {
+            n = (n + 63) / 64;
+            first_[n_levels_++] = words;
+            words += n;
+        } while (n > 1);
+        word_.resize(words);
     }
-    bool empty() const { return level_.back()[0] == 0; }
+    bool empty() const { return word_.back() == 0; }
     void insert(std::size_t i) {
-        for (std::vector<std::uint64_t> &level : level_) {
-            level[i / 64] |= std::uint64_t{1} << i % 64;
-            i /= 64;
-        }
+        for (int level = 0; level < n_levels_; ++level, i /= 64)
+            word_[first_[level] + i / 64] |= std::uint64_t{1} << i % 64;
     }
     std::size_t take() {
         std::size_t least = 0;
-        for (std::size_t l = level_.size(); l-- > 0;)
-            least = 64 * least + static_cast<std::size_t>(__builtin_ctzll(level_[l][least]));
-        std::size_t i = least;
-        for (std::vector<std::uint64_t> &level : level_) {
-            if (level[i / 64] &= level[i / 64] - 1) break;  // it was the least there, too
-            i /= 64;
-        }
+        for (int level = n_levels_; level-- > 0;)
+            least = 64 * least + static_cast<std::size_t>(__builtin_ctzll(word_[first_[level] + least]));
+        std::size_t i = least / 64;
+        for (int level = 0; level < n_levels_; ++level, i /= 64)
+            if (word_[first_[level] + i] &= word_[first_[level] + i] - 1) break;  // it was the least there, too
         return least;
     }
 
 private:
-    std::vector<std::vector<std::uint64_t>> level_;
+    std::size_t first_[11];  // word of each level; 64^11 are more than there can be
+    int n_levels_ = 0;
+    std::vector<std::uint64_t> word_;
 };
 
 // That order in rounds of columns that do not wait for each other, so that a processor can work on them at once: those
