@@ -30,6 +30,7 @@ public:
         open_tiles();
         for (Tile &t : a_.tile) list_bonds(t);
         list_homes();
+        give_back();
         list_entries();
         list_updates();
         list_sides();
@@ -175,6 +176,12 @@ private:
             a_.visit.insert(a_.visit.end(), visits[n].begin(), visits[n].end());
             a_.tile[n].end_visit = size_of(a_.visit);
         }
+    }
+
+    // What the bonds and atoms of tiles were found with, before the longest lists are made.
+    void give_back() {
+        for (Numbers *const list : {&bonds_.start, &bonds_.item, &own_.start, &own_.item, &number_, &home_})
+            Numbers().swap(*list);
     }
 
     // Where a tile with these sides from `first` on gives to a column or an entry of a later one.
