@@ -97,7 +97,6 @@ public:
             return std::move(found_);
         }
         found_.atoms.reserve(atoms_.size());
-        found_.fixed.reserve(atoms_.size());
         found_.bonds.reserve(bonds_.size());
         found_.pairs.reserve(2 * bonds_.size());
         found_.molecules.reserve(n_molecules_);
