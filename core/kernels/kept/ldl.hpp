@@ -96,9 +96,9 @@ private:
     __attribute__((noinline)) void solve(const KeptLdl<V> &kept, const KeptCall &call, const MoleculeLane *lane,
                                          int used, double *scratch) const {
         Memory<V> memory = {scratch};
-        const Inputs in = {call.v.x ? &call.v : nullptr, call.f.x ? &call.f : nullptr, call.rhs, false};
-        const int terms = call.rhs ? given : (call.v.x ? squares : 0) | (call.f.x ? pulls : 0);
-        LdlLinear<V> x(s, lane, used, true, true, unit.team, *call.kept->box, call.kept->r, in, terms, memory);
+        const RightHandSides sides = right_hand_sides_of(call);
+        LdlLinear<V> x(s, lane, used, true, true, unit.team, *call.kept->box, call.kept->r, sides.in, sides.terms,
+                       memory);
         kept.lend_to(x);
         const LdlKeptSolve<V, V> pairs = kept.solve(Pairs<V>{x.t, x.back});
         pairs.start();

@@ -1,11 +1,12 @@
-// Kept factors of trees, rings, stars and triangles in lanes, and of molecules by sparse LDL^T: the elimination of
-// forces is kept, and right-hand sides are solved for with it. Blocks that are flagged keep nothing, and go the
-// ordinary way (flagged.hpp).
+// Kept factors of trees, rings, stars and triangles in lanes, of molecules by sparse LDL^T, and of networks: the
+// elimination of forces is kept, and right-hand sides are solved for with it. Blocks that are flagged keep nothing, and
+// go the ordinary way (flagged.hpp).
 #include "core/kernels/kept/ldl.hpp"
 #include "core/kernels/kept/stars.hpp"
 #include "core/kernels/kept/tree_scales.hpp"
 #include "core/kernels/kept/triangles.hpp"
 #include "core/kernels/molecules/blocks.hpp"
+#include "core/kernels/molecules/network/verbs.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
 namespace holonomic::HOL_ISA {
@@ -14,7 +15,7 @@ using namespace graph;
 
 bool is_kept(const EliminationPlan &s) {
     return s.way.given == Way::triangle || list_of_kept(s) || s.way.given == Way::ring ||
-           (!s.alone && s.way.given == Way::tree);
+           s.way.given == Way::network || (!s.alone && s.way.given == Way::tree);
 }
 
 int64_t kept_scratch_bytes(const EliminationPlan &s) {
@@ -155,9 +156,17 @@ private:
     }
 };
 
+static void keep_networks(const KeepCall &call, const MoleculeUnit &unit, double *scratch) {
+    for (int64_t i = 0; i < unit.count; ++i) {
+        const MoleculeLane lane = molecule_of(unit, i);
+        if (!HOL_NETWORKS::keep_network(call, *unit.elimination, lane, unit.team, scratch)) leave(&lane, 1, call.left);
+    }
+}
+
 void keep_molecules(const KeepCall &call, const MoleculeUnit &unit, double *scratch, Tally &) {
     if (unit.elimination->way.given == Way::triangle)
         return for_each_triangle(KeepTriangles(call), unit, true, scratch);
+    if (unit.elimination->way.given == Way::network) return keep_networks(call, unit, scratch);
     NextMolecules ahead;
     if (const LdlPlan *const list = list_of_kept(*unit.elimination)) {
         KeepByLdl work = {call, unit, *list};
@@ -170,9 +179,18 @@ void keep_molecules(const KeepCall &call, const MoleculeUnit &unit, double *scra
     for_each_block(unit, scratch, ahead, work);
 }
 
+static void solve_kept_networks(const KeptCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
+    for (int64_t i = 0; i < unit.count; ++i) {
+        const MoleculeLane lane = molecule_of(unit, i);
+        if (!HOL_NETWORKS::solve_kept_network(call, *unit.elimination, lane, unit.team, scratch, tally))
+            leave(&lane, 1, call.left);
+    }
+}
+
 static void solve_kept_molecules(const KeptCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
     if (unit.elimination->way.given == Way::triangle)
         return for_each_triangle(SolveTriangles(call, tally), unit, true, scratch);
+    if (unit.elimination->way.given == Way::network) return solve_kept_networks(call, unit, scratch, tally);
     const int bonds_of_star = star_bonds(*unit.elimination);
     if (bonds_of_star == 3) return SolveStars<3>{call, unit, scratch, tally}.solve();
     if (bonds_of_star == 4) return SolveStars<4>{call, unit, scratch, tally}.solve();

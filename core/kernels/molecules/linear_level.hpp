@@ -26,6 +26,10 @@ HOL_INLINE RightHandSides right_hand_sides_of(const ForcesCall &call) {
 HOL_INLINE RightHandSides right_hand_sides_of(const SolveCall &call) {
     return {{nullptr, nullptr, call.rhs, false}, given};
 }
+HOL_INLINE RightHandSides right_hand_sides_of(const KeptCall &call) {
+    return {{call.v.x ? &call.v : nullptr, call.f.x ? &call.f : nullptr, call.rhs, false},
+            call.rhs ? given : (call.v.x ? squares : 0) | (call.f.x ? pulls : 0)};
+}
 HOL_INLINE RightHandSides right_hand_sides_of(const VelocitiesCall &call) {
     return {{&call.v, nullptr, nullptr, true, call.strain}, rates};
 }

@@ -1,5 +1,5 @@
 // Networks (molecules/network/): their equations for all verbs, compiled once.
-#include "core/kernels/molecules/network/linear.hpp"
+#include "core/kernels/molecules/network/kept.hpp"
 #include "core/kernels/molecules/network/positions.hpp"
 #include "core/kernels/molecules/network/verbs.hpp"
 #include "core/kernels/verbs/verbs.hpp"
@@ -9,7 +9,7 @@ namespace holonomic::HOL_ISA {
 using namespace graph;
 
 int64_t network_bytes(const NetworkPlan &s) {
-    const int64_t linear = NetLinear::values(s), newton = NetPositions::values(s);
+    const int64_t linear = NetLinear::values_of_factor(s) + NetLinear::values(s), newton = NetPositions::values(s);
     return static_cast<int64_t>(sizeof(double)) * (linear > newton ? linear : newton);
 }
 
@@ -34,6 +34,26 @@ bool solve_network(const SolveCall &call, const EliminationPlan &s, const Molecu
 bool solve_network(const VelocitiesCall &call, const EliminationPlan &s, const MoleculeLane &lane, bool packed,
                    const LongTeam *team, double *scratch, Tally &tally) {
     return linear_network(call, s, lane, packed, team, scratch, tally);
+}
+
+bool keep_network(const KeepCall &call, const EliminationPlan &s, const MoleculeLane &lane, const LongTeam *team,
+                  double *scratch) {
+    double *const room = call.kept->room(call.kept->owner, lane.molecule, KeptNetwork::doubles(*s.network));
+    if (!room) return false;
+    const KeptNetwork kept = {room};
+    const Inputs none = {};
+    kept.keep(NetLinear(*s.network, lane, true, team, call.box, call.r, none, 0, kept.memory(), {scratch}));
+    return kept.is_good();
+}
+bool solve_kept_network(const KeptCall &call, const EliminationPlan &s, const MoleculeLane &lane, const LongTeam *team,
+                        double *scratch, Tally &tally) {
+    const KeptNetwork kept = {const_cast<double *>(call.kept->block[lane.molecule])};
+    if (!kept.is_good()) return true;  // that is left already
+    const RightHandSides sides = right_hand_sides_of(call);
+    NetLinear x(*s.network, lane, true, team, *call.kept->box, call.kept->r, sides.in, sides.terms, kept.memory(),
+                {scratch});
+    kept.lend_to(x);
+    return solve_linear(call, x, tally, [] {}) == 0;
 }
 
 bool solve_network(const PositionsCall &call, const EliminationPlan &s, const MoleculeLane &lane, bool packed,

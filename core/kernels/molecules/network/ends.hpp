@@ -39,18 +39,23 @@ struct Ends {
     Net3 foreign_a, all_a;      // accelerations by foreign ends, and by all, of a vector that is multiplied
     Fronts fronts;
 
-    static int64_t values(const NetworkPlan &s, bool symmetric) {
-        return Fronts::values(s.fronts, symmetric) + 27 * in_fours(s.n_nodes) +
-               in_fours(3 * static_cast<int64_t>(s.n_tree)) + 10 * in_fours(s.n_unknowns);
+    static int64_t values_of_factor(const NetworkPlan &s, bool symmetric) {
+        return Fronts::values_of_factor(s.fronts, symmetric) + 18 * in_fours(s.n_nodes) +
+               in_fours(3 * static_cast<int64_t>(s.n_tree)) + (symmetric ? 6 : 9) * in_fours(s.n_unknowns);
     }
-    Ends(const Net &of, bool symmetric, Memory<double> &memory)
-        : net(of), s(of.s), D(Net3::take(memory, s.n_unknowns)), b(symmetric ? D : Net3::take(memory, s.n_unknowns)),
-          mass(NetTensor::take(memory, s.n_nodes)), with_ends(NetTensor::take(memory, s.n_nodes)),
-          push(Net3::take(memory, s.n_nodes)), foreign_a(Net3::take(memory, s.n_nodes)),
-          all_a(Net3::take(memory, s.n_nodes)), fronts(of.s.fronts, symmetric, of.team, of.buffer, memory) {
-        tree_bond = reinterpret_cast<Vector3<double> *>(memory.values(in_fours(3 * static_cast<int64_t>(s.n_tree))));
-        double **const arrays[] = {&E, &per_E, &coupling, &y};
-        for (double **array : arrays) *array = memory.values(in_fours(s.n_unknowns));
+    static int64_t values(const NetworkPlan &s) {
+        return Fronts::values(s.fronts) + 9 * in_fours(s.n_nodes) + in_fours(s.n_unknowns);
+    }
+    Ends(const Net &of, bool symmetric, Memory<double> &of_factor, Memory<double> &memory)
+        : net(of), s(of.s), D(Net3::take(of_factor, s.n_unknowns)),
+          b(symmetric ? D : Net3::take(of_factor, s.n_unknowns)), mass(NetTensor::take(of_factor, s.n_nodes)),
+          with_ends(NetTensor::take(of_factor, s.n_nodes)), push(Net3::take(memory, s.n_nodes)),
+          foreign_a(Net3::take(memory, s.n_nodes)), all_a(Net3::take(memory, s.n_nodes)),
+          fronts(of.s.fronts, symmetric, of.team, of.buffer, of_factor, memory) {
+        tree_bond = reinterpret_cast<Vector3<double> *>(of_factor.values(in_fours(3 * static_cast<int64_t>(s.n_tree))));
+        double **const arrays[] = {&E, &per_E, &coupling};
+        for (double **array : arrays) *array = of_factor.values(in_fours(s.n_unknowns));
+        y = memory.values(in_fours(s.n_unknowns));
     }
 
     // Bonds at an end of strands.

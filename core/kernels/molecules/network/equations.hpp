@@ -26,15 +26,19 @@ struct NetEquations {
     double *t, *side, *size_of_side;  // multipliers; right-hand sides, and the sizes of their terms
     Pair3<double> *a;                 // of nodes and atoms of trees, in twice the precision
 
+    static int64_t values_of_factor(const NetworkPlan &s) {
+        return Net::values_of_factor(s) + 3 * in_fours(n_rest(s)) + 3 * in_fours(s.n_bonds);
+    }
     static int64_t values(const NetworkPlan &s) {
-        return Net::values(s) + 15 * in_fours(n_rest(s)) + 3 * in_fours(s.n_atoms) + 6 * in_fours(s.n_bonds);
+        return Net::values(s) + 12 * in_fours(n_rest(s)) + 3 * in_fours(s.n_atoms) + 3 * in_fours(s.n_bonds);
     }
     NetEquations(const NetworkPlan &plan, const MoleculeLane &l, bool packed, const LongTeam *team, const Box &b,
-                 const AtomArray &positions, const Inputs &inputs, int sides, Memory<double> &memory)
-        : net(plan, l, packed, team, memory), s(plan), box(b), coordinates(positions), in(inputs), terms(sides),
-          r(Net3::take(memory, n_rest(s), s.first_node)), f(Net3::take(memory, n_rest(s), s.first_node)),
-          G(Net3::take(memory, n_rest(s), s.first_node)), v(Net3::take(memory, s.n_atoms)),
-          d(Net3::take(memory, s.n_bonds)), t(memory.values(in_fours(s.n_bonds))),
+                 const AtomArray &positions, const Inputs &inputs, int sides, Memory<double> &of_factor,
+                 Memory<double> &memory)
+        : net(plan, l, packed, team, of_factor, memory), s(plan), box(b), coordinates(positions), in(inputs),
+          terms(sides), r(Net3::take(of_factor, n_rest(s), s.first_node)),
+          f(Net3::take(memory, n_rest(s), s.first_node)), G(Net3::take(memory, n_rest(s), s.first_node)),
+          v(Net3::take(memory, s.n_atoms)), d(Net3::take(of_factor, s.n_bonds)), t(memory.values(in_fours(s.n_bonds))),
           side(memory.values(in_fours(s.n_bonds))), size_of_side(memory.values(in_fours(s.n_bonds))),
           a(reinterpret_cast<Pair3<double> *>(memory.values(6 * in_fours(n_rest(s))))) {}
 
@@ -69,11 +73,14 @@ struct NetEquations {
     }
     void find_equations_of_trees() const {
         for (int32_t k = s.first_tree_place; k < s.n_bonds; ++k) {
-            const int32_t i = s.from[k], j = s.to[k];
-            const Vector3<double> bond = net.bond_between(box, r.get<double>(i), r.get<double>(j));
+            const Vector3<double> bond = net.bond_between(box, r.get<double>(s.from[k]), r.get<double>(s.to[k]));
             d.set(k, bond);
-            find_side<double>(k, bond, {v.get<double>(i), f.get<double>(i)}, {v.get<double>(j), f.get<double>(j)});
+            find_side_of_tree(k, bond);
         }
+    }
+    HOL_FORCED void find_side_of_tree(int32_t k, const Vector3<double> &bond) const {
+        const int32_t i = s.from[k], j = s.to[k];
+        find_side<double>(k, bond, {v.get<double>(i), f.get<double>(i)}, {v.get<double>(j), f.get<double>(j)});
     }
     // Of strands, as the caller has their atoms.
     template <class V>
@@ -98,6 +105,33 @@ struct NetEquations {
                 find_side<V>(place, bond, from.terms, to.terms);
             });
     }
+    // Right-hand sides alone, where bonds, inverse masses and positions of the rest are kept: of the rest; of strands.
+    __attribute__((noinline)) void find_sides_of_rest() const {
+        if (has_terms_of_atoms())
+            net.for_ranges(s.first_node, s.n_atoms, [&](int32_t first, int32_t end) {
+                net.for_all(first, end, [&](auto width, int32_t i) HOL_FORCED {
+                    const auto atom = kept_terms_at<decltype(width)>(i);
+                    v.set(i, atom.v);
+                    f.set(i, atom.f);
+                });
+            });
+        for (int32_t k = s.first_tree_place; k < s.n_bonds; ++k) find_side_of_tree(k, d.get<double>(k));
+    }
+    template <class V>
+    HOL_FORCED void find_sides(const NetStrands &g) const {
+        net.for_bonds(
+            g, [&]() HOL_FORCED { return terms_at_node<V>(g, 0); },
+            [&](int32_t site, int32_t) HOL_FORCED { return kept_terms_at<V>(site); },
+            [&]() HOL_FORCED { return terms_at_node<V>(g, 1); },
+            [&](int32_t place, const NetTerms<V> &from, const NetTerms<V> &to)
+                HOL_FORCED { find_side<V>(place, d.get<V>(place), from, to); });
+    }
+    template <class V>
+    HOL_FORCED NetTerms<V> kept_terms_at(int32_t site) const {
+        return has_terms_of_atoms() ? read_terms<V>(net.reader<V>(site), load_any<V>(net.w + site)) : NetTerms<V>{};
+    }
+    bool has_terms_of_atoms() const { return has(squares | rates | pulls); }
+
     // A right-hand side d.(x_j - x_i) + |v_j - v_i|^2, and the sum of its terms' sizes.
     template <class V>
     HOL_FORCED void find_side(int32_t place, const Vector3<V> &bond, const NetTerms<V> &from,

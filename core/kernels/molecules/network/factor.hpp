@@ -26,21 +26,27 @@ struct NetFactor {
     StiffJoints stiff;              // of nodes, then of atoms of trees
     Unknowns unknowns;
 
-    static int64_t values(const NetworkPlan &s, bool symmetric) {
-        return 5 * in_fours(s.n_bonds) + in_fours(12 * static_cast<int64_t>(s.n_tree)) +
-               StiffJoints::values(s.n_nodes + s.n_tree) + Unknowns::values(s, symmetric);
+    static int64_t values_of_factor(const NetworkPlan &s, bool symmetric) {
+        return (symmetric ? 3 : 5) * in_fours(s.n_bonds) + in_fours(9 * static_cast<int64_t>(s.n_tree)) +
+               StiffJoints::values_of_factor(s.n_nodes + s.n_tree) + Unknowns::values_of_factor(s, symmetric);
     }
-    // D != b: a matrix that is not symmetric.
-    NetFactor(const Net &of, const Net3 &bonds, bool symmetric, Memory<double> &memory)
-        : net(of), s(of.s), b(bonds), stiff(s.n_nodes + s.n_tree, memory), unknowns(of, symmetric, memory) {
-        const int64_t n = in_fours(s.n_bonds);
-        to_last = memory.values(n);
-        from_last = symmetric ? to_last : memory.values(n);
-        to_first = memory.values(n);
-        from_first = symmetric ? to_first : memory.values(n);
-        per_pivot = memory.values(n);
-        joint = reinterpret_cast<Tensor<double> *>(memory.values(in_fours(12 * static_cast<int64_t>(s.n_tree))));
-        push = reinterpret_cast<Vector3<double> *>(joint + s.n_tree);
+    static int64_t values(const NetworkPlan &s) {
+        return in_fours(3 * static_cast<int64_t>(s.n_tree)) + StiffJoints::values(s.n_nodes + s.n_tree) +
+               Unknowns::values(s);
+    }
+    // D != b: a matrix that is not symmetric. What solves only read is in the memory of the factor, what they write in
+    // the other one.
+    NetFactor(const Net &of, const Net3 &bonds, bool symmetric, Memory<double> &of_factor, Memory<double> &memory)
+        : net(of), s(of.s), b(bonds), stiff(s.n_nodes + s.n_tree, of_factor, memory),
+          unknowns(of, symmetric, of_factor, memory) {
+        const int64_t n = in_fours(s.n_bonds), n_tree = s.n_tree;
+        to_last = of_factor.values(n);
+        from_last = symmetric ? to_last : of_factor.values(n);
+        to_first = of_factor.values(n);
+        from_first = symmetric ? to_first : of_factor.values(n);
+        per_pivot = of_factor.values(n);
+        joint = reinterpret_cast<Tensor<double> *>(of_factor.values(in_fours(9 * n_tree)));
+        push = reinterpret_cast<Vector3<double> *>(memory.values(in_fours(3 * n_tree)));
     }
 
     // Makes the factors, and takes the right-hand sides y up: of the rest, of each part, then of what is left.

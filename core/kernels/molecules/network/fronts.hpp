@@ -24,24 +24,28 @@ struct Fronts {
     Offsets *place;
     int64_t before_stack;  // of a thread's memory
 
-    static int64_t values(const FrontPlan &s, bool symmetric) {
+    static int64_t values_of_factor(const FrontPlan &s, bool symmetric) {
         if (s.n_fronts == 0) return 0;
         const Sizes n = sizes(s);
-        return (symmetric ? 1 : 2) * in_fours(n.entries) + in_fours(n.pivots) + in_fours(n.waiting) +
-               in_fours(n_rows(s)) + in_fours(4 * static_cast<int64_t>(s.n_fronts));
+        return (symmetric ? 1 : 2) * in_fours(n.entries) + in_fours(n.pivots);
+    }
+    static int64_t values(const FrontPlan &s) {
+        if (s.n_fronts == 0) return 0;
+        return in_fours(sizes(s).waiting) + in_fours(n_rows(s)) + in_fours(4 * static_cast<int64_t>(s.n_fronts));
     }
     static int64_t values_of_buffer(const FrontPlan &s) {
         const Sizes n = sizes(s);
         return for_one(n) + in_fours(n.stack);
     }
-    Fronts(const FrontPlan &plan, bool symmetric, const LongTeam *threads, double *of_thread, Memory<double> &memory)
+    Fronts(const FrontPlan &plan, bool symmetric, const LongTeam *threads, double *of_thread, Memory<double> &of_factor,
+           Memory<double> &memory)
         : s(plan), team(threads), buffer(of_thread) {
         if (s.n_fronts == 0) return;
         place = reinterpret_cast<Offsets *>(memory.values(in_fours(4 * static_cast<int64_t>(s.n_fronts))));
         const Sizes n = lay_out(s, [&](int32_t f, const Offsets &p) { place[f] = p; });
-        lower = memory.values(in_fours(n.entries));
-        upper = symmetric ? lower : memory.values(in_fours(n.entries));
-        per_pivot = memory.values(in_fours(n.pivots));
+        lower = of_factor.values(in_fours(n.entries));
+        upper = symmetric ? lower : of_factor.values(in_fours(n.entries));
+        per_pivot = of_factor.values(in_fours(n.pivots));
         waiting = memory.values(in_fours(n.waiting));
         given = memory.values(in_fours(n_rows(s)));
         before_stack = for_one(n);

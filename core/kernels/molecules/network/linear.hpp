@@ -15,7 +15,12 @@ struct NetLinear : NetProof {
 
     NetLinear(const NetworkPlan &plan, const MoleculeLane &l, bool packed, const LongTeam *team, const Box &b,
               const AtomArray &positions, const Inputs &inputs, int sides, Memory<double> memory)
-        : NetProof(plan, l, packed, team, b, positions, inputs, sides, memory) {}
+        : NetProof(plan, l, packed, team, b, positions, inputs, sides, memory, memory) {}
+    // Over the memory of factors that are kept.
+    NetLinear(const NetworkPlan &plan, const MoleculeLane &l, bool packed, const LongTeam *team, const Box &b,
+              const AtomArray &positions, const Inputs &inputs, int sides, Memory<double> of_factor,
+              Memory<double> memory)
+        : NetProof(plan, l, packed, team, b, positions, inputs, sides, of_factor, memory) {}
 
     __attribute__((noinline)) bool find_and_prove() const {
         if (!find()) return false;

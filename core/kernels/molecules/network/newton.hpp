@@ -27,17 +27,17 @@ struct NetNewton {
 
     static int32_t n_rest(const NetworkPlan &s) { return s.n_nodes + s.n_tree; }
     static int64_t values(const NetworkPlan &s) {
-        return Net::values(s) + 6 * in_fours(n_rest(s)) + 11 * in_fours(s.n_bonds) + in_fours(s.n_shares + 1) +
-               NetFactor::values(s, false);
+        return Net::values_of_factor(s) + Net::values(s) + 6 * in_fours(n_rest(s)) + 11 * in_fours(s.n_bonds) + in_fours(s.n_shares + 1) +
+               NetFactor::values_of_factor(s, false) + NetFactor::values(s);
     }
     NetNewton(const NetworkPlan &plan, const MoleculeLane &lane, bool packed, const LongTeam *team,
               Memory<double> memory)
-        : net(plan, lane, packed, team, memory), s(plan), r(Net3::take(memory, n_rest(s), s.first_node)),
+        : net(plan, lane, packed, team, memory, memory), s(plan), r(Net3::take(memory, n_rest(s), s.first_node)),
           moves(Net3::take(memory, n_rest(s), s.first_node)), b(Net3::take(memory, s.n_bonds)),
           D(Net3::take(memory, s.n_bonds)), tau(memory.values(in_fours(s.n_bonds))),
           t(memory.values(in_fours(s.n_bonds))), a2(memory.values(in_fours(s.n_bonds))),
           per_a2(memory.values(in_fours(s.n_bonds))), stretch(memory.values(in_fours(s.n_bonds))),
-          worst(memory.values(in_fours(s.n_shares + 1))), factor(net, b, false, memory) {}
+          worst(memory.values(in_fours(s.n_shares + 1))), factor(net, b, false, memory, memory) {}
 
     // What is left of bonds' lengths: |D| - a, times |D_0| of the bonds D_0 that the factors are made of.
     template <bool fresh, class V>

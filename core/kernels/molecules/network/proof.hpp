@@ -18,6 +18,7 @@ struct NetProof : NetEquations {
     double *tension;   // of the rest, by site, sum of |t| |d|
     int32_t *n_flags;  // [n_shares + 1] of parts
     NetFactor factor;
+    bool is_kept = false;        // the factors are those of an earlier call
     mutable int64_t rounds = 0;  // that the unknowns have taken so far
     mutable bool unproven = false,
                  flagged = false;  // of some part; after the first, what others leave is not looked for
@@ -67,16 +68,20 @@ struct NetProof : NetEquations {
         }
     };
 
+    static int64_t values_of_factor(const NetworkPlan &s) {
+        return NetEquations::values_of_factor(s) + NetFactor::values_of_factor(s, true);
+    }
     static int64_t values(const NetworkPlan &s) {
         return NetEquations::values(s) + in_fours(s.n_bonds) + in_fours(n_rest(s)) + in_fours(s.n_shares / 2 + 1) +
-               NetFactor::values(s, true);
+               NetFactor::values(s);
     }
     NetProof(const NetworkPlan &plan, const MoleculeLane &l, bool packed, const LongTeam *team, const Box &b,
-             const AtomArray &positions, const Inputs &inputs, int sides, Memory<double> &memory)
-        : NetEquations(plan, l, packed, team, b, positions, inputs, sides, memory),
+             const AtomArray &positions, const Inputs &inputs, int sides, Memory<double> &of_factor,
+             Memory<double> &memory)
+        : NetEquations(plan, l, packed, team, b, positions, inputs, sides, of_factor, memory),
           enough(memory.values(in_fours(s.n_bonds))), tension(memory.values(in_fours(n_rest(s))) - s.first_node),
           n_flags(reinterpret_cast<int32_t *>(memory.values(in_fours(s.n_shares / 2 + 1)))),
-          factor(net, d, true, memory) {}
+          factor(net, d, true, of_factor, memory) {}
 
     // Strands need what has been found for the rest. One part of them after the other goes through all that it needs,
     // in cache, one vector of strands in registers.
@@ -90,6 +95,16 @@ struct NetProof : NetEquations {
             factor.factorize(part, d, t);
         });
         factor.close();
+    }
+    // The same where the factors are kept.
+    void load_sides() const {
+        find_sides_of_rest();
+        factor.take_up_rest(t);
+        net.for_parts([&](const NetPart &part) {
+            net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED { find_sides<decltype(width)>(g); });
+            factor.take_up(part, t);
+        });
+        factor.add_pushes();
     }
     // Multipliers of the rest, for what is in y, as far up as it has been taken.
     bool solve_for(double part_left, const double *sizes, double *y) const {
@@ -117,10 +132,17 @@ struct NetProof : NetEquations {
         return !any(~ordinary_squares(least, sum, most_ordinary_pivot)) &&
                ordinary_squares(least_of_rest, rest, most_ordinary_pivot).set;
     }
+    // Factors and right-hand sides; false where nothing can be made of the bonds.
+    bool make() const {
+        load();
+        return has_ordinary_squares();
+    }
     // All multipliers, and whether they are proven.
     __attribute__((noinline)) bool find() const {
-        load();
-        if (!has_ordinary_squares()) return false;
+        if (is_kept)
+            load_sides();
+        else if (!make())
+            return false;
         if (!solve_for(any_part, size_of_side, t)) return false;
         prove_all(t, most_left(), true, [](const NetPart &) {});
         return true;

@@ -18,17 +18,18 @@ HOL_INLINE double left_of(double y, const Vector3<double> &D, const Pair3<double
 
 struct StiffJoints {
     struct Joint {
-        Pair3<double> row[3], push;  // the inverse mass that children leave; from their y
+        Pair3<double> row[3];  // the inverse mass that children leave
     };
     Joint *joint;
-    int32_t *is;  // whether it is one; else nothing is known of it
+    int32_t *is;          // whether it is one; else nothing is known of it
+    Pair3<double> *push;  // from the children's y
 
-    static int64_t values(int32_t n) { return in_fours(24 * static_cast<int64_t>(n)) + in_fours(n / 2 + 1); }
-    StiffJoints(int32_t n, Memory<double> &memory)
-        : joint(reinterpret_cast<Joint *>(memory.values(in_fours(24 * static_cast<int64_t>(n))))),
-          is(reinterpret_cast<int32_t *>(memory.values(in_fours(n / 2 + 1)))) {
-        for (int32_t i = 0; i < n; ++i) is[i] = 0;
-    }
+    static int64_t values_of_factor(int32_t n) { return in_fours(18 * static_cast<int64_t>(n)) + in_fours(n / 2 + 1); }
+    static int64_t values(int32_t n) { return in_fours(6 * static_cast<int64_t>(n)); }
+    StiffJoints(int32_t n, Memory<double> &of_factor, Memory<double> &memory)
+        : joint(reinterpret_cast<Joint *>(of_factor.values(in_fours(18 * static_cast<int64_t>(n))))),
+          is(reinterpret_cast<int32_t *>(of_factor.values(in_fours(n / 2 + 1)))),
+          push(reinterpret_cast<Pair3<double> *>(memory.values(in_fours(6 * static_cast<int64_t>(n))))) {}
 
     void begin(int32_t i, double w) const {
         const Tensor<double> mass = diagonal_tensor(w);
@@ -57,11 +58,11 @@ struct StiffJoints {
         const Pair<double> sum = dot_pairs(pairs_of(D, none), times(i, pairs_of(b, none)));
         return sum.hi + sum.lo;
     }
-    void set_push(int32_t i, const Pair3<double> &push) const { joint[i].push = push; }
+    void set_push(int32_t i, const Pair3<double> &sum) const { push[i] = sum; }
     // By its children, and by another pull.
-    Pair3<double> acceleration(int32_t i) const { return times(i, joint[i].push); }
+    Pair3<double> acceleration(int32_t i) const { return times(i, push[i]); }
     Pair3<double> acceleration(int32_t i, const Pair3<double> &pull) const {
-        return times(i, add_pairs(joint[i].push, pull));
+        return times(i, add_pairs(push[i], pull));
     }
 
 private:

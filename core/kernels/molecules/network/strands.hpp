@@ -13,11 +13,13 @@ struct Net : NetSites {
     double *buffer;  // of this thread; those of the others stand at the beginning of their working arrays, too
     mutable bool backwards = false;
 
-    static int64_t values(const NetworkPlan &s) { return values_of_buffer(s) + in_fours(s.n_atoms); }
-    // memory: all of a thread's.
-    Net(const NetworkPlan &plan, const MoleculeLane &l, bool packed, const LongTeam *threads, Memory<double> &memory)
+    static int64_t values_of_factor(const NetworkPlan &s) { return in_fours(s.n_atoms); }
+    static int64_t values(const NetworkPlan &s) { return values_of_buffer(s); }
+    // memory: all of a thread's. of_factor: what is kept with a factor; it may be the same.
+    Net(const NetworkPlan &plan, const MoleculeLane &l, bool packed, const LongTeam *threads, Memory<double> &of_factor,
+        Memory<double> &memory)
         : NetSites(plan, l, packed), team(threads), buffer(memory.values(values_of_buffer(plan))) {
-        w = memory.values(in_fours(plan.n_atoms));
+        w = of_factor.values(in_fours(plan.n_atoms));
     }
 
     static int64_t values_of_buffer(const NetworkPlan &s) {

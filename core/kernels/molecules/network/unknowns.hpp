@@ -15,11 +15,12 @@ struct Unknowns : Ends {
     double *r, *shadow, *p, *p_node, *v, *s_node, *t;  // s takes the place of r
     mutable bool direct = false, tried = false;        // fronts are used; or have been tried
 
-    static int64_t values(const NetworkPlan &s, bool symmetric) {
-        return Ends::values(s, symmetric) + in_fours(3 * static_cast<int64_t>(s.n_node_shares)) +
+    static int64_t values(const NetworkPlan &s) {
+        return Ends::values(s) + in_fours(3 * static_cast<int64_t>(s.n_node_shares)) +
                9 * in_fours(s.n_unknowns + 3 * s.fronts.n_hubs);
     }
-    Unknowns(const Net &of, bool symmetric, Memory<double> &memory) : Ends(of, symmetric, memory) {
+    Unknowns(const Net &of, bool symmetric, Memory<double> &of_factor, Memory<double> &memory)
+        : Ends(of, symmetric, of_factor, memory) {
         sum = memory.values(in_fours(3 * static_cast<int64_t>(s.n_node_shares)));
         double **const arrays[] = {&x, &size, &r, &shadow, &p, &p_node, &v, &s_node, &t};
         for (double **array : arrays) *array = memory.values(in_fours(s.n_unknowns + 3 * s.fronts.n_hubs));
@@ -36,6 +37,17 @@ struct Unknowns : Ends {
     int32_t solve(double part, const double *sizes) const {
         const int32_t taken = iterate(part, sizes);
         return taken < 0 && use_fronts() ? iterate(part, sizes) : taken;
+    }
+    // Makes fronts where they take less than two solves without them, as one shows whose solution is no matter.
+    // sizes: room for those of right-hand sides.
+    void prepare_for_many(double part, double *sizes) const {
+        if (direct || s.fronts.n_fronts == 0) return;
+        for (int32_t u = 0; u < s.n_unknowns; ++u) {
+            const bool turned = static_cast<uint32_t>(u) * 2654435769u >> 31 != 0;
+            y[u] = turned ? -E[u] : E[u];
+            sizes[s.place_of[u]] = E[u];
+        }
+        if (2 * solve(part, sizes) > s.fronts.rounds) use_fronts();
     }
 
 private:

@@ -1,4 +1,4 @@
-// One large molecule as a network of strands and nodes: the three levels. False where that has not converged: then
+// One large molecule as a network of strands and nodes: the three levels, and kept factors. False where that has not converged: then
 // nothing has been written.
 #pragma once
 
@@ -18,6 +18,10 @@ bool solve_network(const VelocitiesCall &, const EliminationPlan &, const Molecu
                    double *scratch, Tally &);
 bool solve_network(const PositionsCall &, const EliminationPlan &, const MoleculeLane &, bool packed, const LongTeam *,
                    double *scratch, Tally &);
+// Factors that are kept, and solves with them. The first is false where nothing is kept.
+bool keep_network(const KeepCall &, const EliminationPlan &, const MoleculeLane &, const LongTeam *, double *scratch);
+bool solve_kept_network(const KeptCall &, const EliminationPlan &, const MoleculeLane &, const LongTeam *,
+                        double *scratch, Tally &);
 
 }  // namespace holonomic::HOL_NETWORKS
 
