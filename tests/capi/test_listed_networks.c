@@ -44,7 +44,7 @@ static network_scene make(void)
 
 /** All results of one handle, per bond by the molecule's own numbers. */
 typedef struct {
-    double *g, *v, *r, *forces, *tension, *solve, *velocities, *positions, *again;
+    double *g, *v, *r, *forces, *tension, *solve, *velocities, *positions, *again, *kept_forces, *kept_solve;
 } results;
 
 /** `place` [n_bonds]: where bonds stand in the list; of the first n_bonds alone. */
@@ -52,27 +52,43 @@ static results find(network_scene *s, int64_t n_bonds, const int64_t *place)
 {
     const size_t size = 3 * (size_t)s->m.n_atoms, n = (size_t)n_bonds;
     int64_t *pairs = malloc(2 * n * sizeof *pairs);
-    double *length = untouched(n), *rhs = untouched(n), *values[6];
-    results out = {
-        untouched(size), copy_of(s->m.v, size), molecule_drifted(&s->m, 1e-3), NULL, NULL, NULL, NULL, NULL, NULL};
+    double *length = untouched(n), *rhs = untouched(n), *values[8];
+    results out = {untouched(size),
+                   copy_of(s->m.v, size),
+                   molecule_drifted(&s->m, 1e-3),
+                   NULL,
+                   NULL,
+                   NULL,
+                   NULL,
+                   NULL,
+                   NULL,
+                   NULL,
+                   NULL};
     double *const start = copy_of(out.r, size);
-    double **const to[6] = {&out.forces, &out.tension, &out.solve, &out.velocities, &out.positions, &out.again};
+    double **const to[8] = {&out.forces,    &out.tension, &out.solve,       &out.velocities,
+                            &out.positions, &out.again,   &out.kept_forces, &out.kept_solve};
     for (size_t k = 0; k < n; ++k) {
         for (int e = 0; e < 2; ++e) pairs[2 * place[k] + e] = s->m.pairs[2 * k + (size_t)e];
         length[place[k]] = s->m.length[k];
         rhs[place[k]] = k % 9 == 1;
     }
-    for (int i = 0; i < 6; ++i) values[i] = untouched(n);
+    for (int i = 0; i < 8; ++i) values[i] = untouched(n);
     CHECK(hol_chains_create(s->m.n_atoms, s->m.mass, &s->chains));
     CHECK(hol_chains_add_bonds(s->chains, n_bonds, pairs, length));
     for (size_t i = 0; i < size; ++i) out.g[i] = 0;
     CHECK(hol_forces(s->chains, s->m.r, s->m.v, s->m.f, values[0], values[1], out.g, HOL_WRITE, NULL));
     CHECK(hol_solve(s->chains, s->m.r, rhs, values[2], NULL, HOL_WRITE, NULL));
+    hol_factors *factors;
+    CHECK(hol_factors_create(s->chains, &factors));
+    CHECK(hol_factors_update(factors, s->m.r));
+    CHECK(hol_factors_forces(factors, s->m.v, s->m.f, values[6], NULL, NULL, HOL_WRITE, NULL));
+    CHECK(hol_factors_solve(factors, 1, rhs, values[7], NULL, HOL_WRITE, NULL));
+    hol_factors_destroy(factors);
     CHECK(hol_project_velocities(s->chains, s->m.r, out.v, values[3], NULL));
     CHECK(hol_project_positions(s->chains, s->m.r, out.r, NULL, 1e-3, values[4], 0, NULL, NULL));
     for (size_t k = 0; k < n; ++k) values[5][k] = values[4][k];
     CHECK(hol_project_positions(s->chains, s->m.r, start, NULL, 1e-3, values[5], 1, NULL, NULL));
-    for (int i = 0; i < 6; ++i) {
+    for (int i = 0; i < 8; ++i) {
         *to[i] = untouched(n);
         for (size_t k = 0; k < n; ++k) (*to[i])[k] = values[i][place[k]];
         free(values[i]);
@@ -85,7 +101,7 @@ static results find(network_scene *s, int64_t n_bonds, const int64_t *place)
 static void free_results(results x)
 {
     free(x.g), free(x.v), free(x.r), free(x.forces), free(x.tension), free(x.solve), free(x.velocities);
-    free(x.positions), free(x.again);
+    free(x.positions), free(x.again), free(x.kept_forces), free(x.kept_solve);
 }
 
 /** The gel alone, and beside a chain whose bonds are copied. */
@@ -115,6 +131,8 @@ static void the_order_of_bonds_changes_no_bit(void **state)
         assert_same_bits(any.velocities, sorted.velocities, m);
         assert_same_bits(any.positions, sorted.positions, m);
         assert_same_bits(any.again, sorted.again, m);
+        assert_same_bits(any.kept_forces, sorted.kept_forces, m);
+        assert_same_bits(any.kept_solve, sorted.kept_solve, m);
         if (n == all) {
             assert_same_bits(any.g, sorted.g, size);
             assert_same_bits(any.v, sorted.v, size);

@@ -108,6 +108,30 @@ static void metric_force_of_a_large_gel_is_what_its_energy_falls_by(void **state
     network_free(s);
 }
 
+/** What a call has found. */
+typedef struct {
+    double *lambda, *tension, *g, virial[9];
+} found;
+
+static found nothing_found(const network_scene *s)
+{
+    return (found){
+        untouched((size_t)s->m.n_bonds), untouched((size_t)s->m.n_bonds), untouched(3 * (size_t)s->m.n_atoms), {0}};
+}
+static void check_found(const network_scene *s, const molecule_solution *exact, found is)
+{
+    const long double unit = network_unit(s);
+    for (int64_t k = 0; k < s->m.n_bonds; ++k) {
+        CHECK_AT_MOST(fabsl(is.lambda[k] - exact->lambda[k]), unit * exact->lambda_scale[k]);
+        CHECK_AT_MOST(fabsl(is.tension[k] - exact->tension[k]), unit * 2 * s->m.length[k] * exact->lambda_scale[k]);
+    }
+    for (int64_t i = 0; i < 3 * s->m.n_atoms; ++i)
+        CHECK_AT_MOST(fabsl(is.g[i] - exact->g[i]), unit * exact->g_scale[i / 3]);
+    for (int a = 0; a < 9; ++a) CHECK_AT_MOST(fabsl(is.virial[a] - exact->virial[a]), unit * exact->virial_scale);
+    free(is.lambda), free(is.tension), free(is.g);
+}
+
+/** By one call, and by factors that are kept. */
 static void forces_are_those_of_many_digits(void **state)
 {
     (void)state;
@@ -115,28 +139,35 @@ static void forces_are_those_of_many_digits(void **state)
         network_scene s = make(sorts[which], 1 + (uint64_t)which);
         const molecule_problem p = network_problem(&s);
         molecule_solution exact;
-        double *lambda = untouched((size_t)s.m.n_bonds), *g = untouched(3 * (size_t)s.m.n_atoms), virial[9];
-        double *tension = untouched((size_t)s.m.n_bonds), *again = untouched((size_t)s.m.n_bonds);
-        double *rhs = untouched((size_t)s.m.n_bonds);
+        const size_t n = (size_t)s.m.n_bonds;
+        double *rhs = untouched(2 * n), *solved = untouched(2 * n), *kept = untouched(2 * n);
+        found once = nothing_found(&s), by_factors = nothing_found(&s);
+        hol_factors *factors;
+        CHECK(hol_factors_create(s.chains, &factors));
+        CHECK(hol_factors_update(factors, s.m.r));
         assert_int_equal(molecule_forces(&p, &exact), 0);
-        CHECK(hol_forces(s.chains, s.m.r, s.m.v, s.m.f, lambda, tension, g, HOL_WRITE, virial));
-        for (int64_t k = 0; k < s.m.n_bonds; ++k) {
-            CHECK_AT_MOST(fabsl(lambda[k] - exact.lambda[k]), network_unit(&s) * exact.lambda_scale[k]);
-            CHECK_AT_MOST(fabsl(tension[k] - exact.tension[k]),
-                          network_unit(&s) * 2 * s.m.length[k] * exact.lambda_scale[k]);
+        CHECK(hol_forces(s.chains, s.m.r, s.m.v, s.m.f, once.lambda, once.tension, once.g, HOL_WRITE, once.virial));
+        check_found(&s, &exact, once);
+        CHECK(hol_factors_forces(factors, s.m.v, s.m.f, by_factors.lambda, by_factors.tension, by_factors.g, HOL_WRITE,
+                                 by_factors.virial));
+        check_found(&s, &exact, by_factors);
+        molecule_solution_free(&exact);
+        random_stream random = random_seed(4);
+        for (size_t k = 0; k < n; ++k) rhs[k] = k % 50 == 7 ? 1 : 0, rhs[n + k] = random_normal(&random);
+        CHECK(hol_solve(s.chains, s.m.r, rhs, solved, NULL, HOL_WRITE, NULL));
+        CHECK(hol_solve(s.chains, s.m.r, rhs + n, solved + n, NULL, HOL_WRITE, NULL));
+        CHECK(hol_factors_solve(factors, 2, rhs, kept, NULL, HOL_WRITE, NULL));
+        for (size_t first = 0; first < 2 * n; first += n) {
+            assert_int_equal(molecule_solve(&p, rhs + first, &exact), 0);
+            for (size_t k = 0; k < n; ++k) {
+                const long double may_be_wrong = network_unit(&s) * exact.lambda_scale[k];
+                CHECK_AT_MOST(fabsl(solved[first + k] - exact.lambda[k]), may_be_wrong);
+                CHECK_AT_MOST(fabsl(kept[first + k] - exact.lambda[k]), may_be_wrong);
+            }
+            molecule_solution_free(&exact);
         }
-        for (int64_t i = 0; i < 3 * s.m.n_atoms; ++i)
-            CHECK_AT_MOST(fabsl(g[i] - exact.g[i]), network_unit(&s) * exact.g_scale[i / 3]);
-        for (int a = 0; a < 9; ++a)
-            CHECK_AT_MOST(fabsl(virial[a] - exact.virial[a]), network_unit(&s) * exact.virial_scale);
-        molecule_solution_free(&exact);
-        for (int64_t k = 0; k < s.m.n_bonds; ++k) rhs[k] = k % 50 == 7 ? 1 : 0;
-        assert_int_equal(molecule_solve(&p, rhs, &exact), 0);
-        CHECK(hol_solve(s.chains, s.m.r, rhs, again, NULL, HOL_WRITE, NULL));
-        for (int64_t k = 0; k < s.m.n_bonds; ++k)
-            CHECK_AT_MOST(fabsl(again[k] - exact.lambda[k]), network_unit(&s) * exact.lambda_scale[k]);
-        molecule_solution_free(&exact);
-        free(lambda), free(g), free(tension), free(again), free(rhs);
+        hol_factors_destroy(factors);
+        free(rhs), free(solved), free(kept);
         network_free(s);
     }
 }
@@ -225,6 +256,19 @@ static void threads_and_layouts_change_no_bit(void **state)
     const size_t size = 3 * (size_t)s.m.n_atoms, n = (size_t)s.m.n_bonds;
     double *g = untouched(size), *lambda = untouched(n), *v = copy_of(s.m.v, size), *r = molecule_drifted(&s.m, 0.005);
     double *h = untouched(size), *mu = untouched(n), *w = copy_of(s.m.v, size), *q = copy_of(r, size);
+    double *kept[2] = {untouched(n), untouched(n)}, *kept_g[2] = {untouched(size), untouched(size)};
+    hol_factors *factors;
+    CHECK(hol_factors_create(s.chains, &factors));
+    for (int threads = 1; threads <= 3; threads += 2) {
+        CHECK(hol_chains_set_threads(s.chains, threads));
+        CHECK(hol_factors_update(factors, s.m.r));
+        CHECK(hol_factors_forces(factors, s.m.v, s.m.f, kept[threads / 2], NULL, kept_g[threads / 2], HOL_WRITE, NULL));
+    }
+    hol_factors_destroy(factors);
+    assert_same_bits(kept[0], kept[1], n);
+    assert_same_bits(kept_g[0], kept_g[1], size);
+    for (int i = 0; i < 2; ++i) free(kept[i]), free(kept_g[i]);
+    CHECK(hol_chains_set_threads(s.chains, 1));
     CHECK(hol_forces(s.chains, s.m.r, s.m.v, s.m.f, lambda, NULL, g, HOL_WRITE, NULL));
     CHECK(hol_project_velocities(s.chains, s.m.r, v, NULL, NULL));
     CHECK(hol_project_positions(s.chains, s.m.r, r, NULL, 0.005, NULL, 0, NULL, NULL));
@@ -256,6 +300,29 @@ static void bad_data_leave_everything_untouched(void **state)
     }
 }
 
+/** Of the equations of forces. */
+static void check_rounding_left(const molecule *m, const double *lambda, const double *g)
+{
+    double *tension = calloc((size_t)m->n_atoms, sizeof *tension); /* the rounding of lambda is felt as that of these */
+    for (int64_t k = 0; k < m->n_bonds; ++k)
+        for (int e = 0; e < 2; ++e) tension[m->pairs[2 * k + e]] += fabs(2 * lambda[k] * m->length[k]);
+    for (int64_t k = 0; k < m->n_bonds; ++k) {
+        const int64_t i = m->pairs[2 * k], j = m->pairs[2 * k + 1];
+        long double sum = 0, size = m->length[k] * (tension[i] + tension[j]);
+        for (int c = 0; c < 3; ++c) {
+            const long double d = (long double)m->r[3 * j + c] - m->r[3 * i + c],
+                              dv = m->v[3 * j + c] - m->v[3 * i + c];
+            const long double a = (long double)m->f[3 * j + c] + g[3 * j + c] - m->f[3 * i + c] - g[3 * i + c];
+            sum += d * a + dv * dv;
+            size += fabsl(d) *
+                        (fabsl(m->f[3 * j + c]) + fabsl(g[3 * j + c]) + fabsl(m->f[3 * i + c]) + fabsl(g[3 * i + c])) +
+                    dv * dv;
+        }
+        CHECK_AT_MOST(fabsl(sum), 4 * DBL_EPSILON * size);
+    }
+    free(tension);
+}
+
 /** A cubic lattice without a fifth of its bonds, whose elimination would fill gigabytes. */
 static void what_a_lattice_leaves_of_its_equations_is_rounding(void **state)
 {
@@ -280,25 +347,16 @@ static void what_a_lattice_leaves_of_its_equations_is_rounding(void **state)
     CHECK(hol_chains_set_memory_limit(chains, 1000 * m.n_bonds));
     CHECK(hol_chains_add_bonds(chains, m.n_bonds, m.pairs, m.length));
     CHECK(hol_forces(chains, m.r, m.v, m.f, lambda, NULL, g, HOL_WRITE, NULL));
-    double *tension = calloc((size_t)m.n_atoms, sizeof *tension); /* the rounding of lambda is felt as that of these */
-    for (int64_t k = 0; k < m.n_bonds; ++k)
-        for (int e = 0; e < 2; ++e) tension[m.pairs[2 * k + e]] += fabs(2 * lambda[k] * m.length[k]);
-    for (int64_t k = 0; k < m.n_bonds; ++k) {
-        const int64_t i = m.pairs[2 * k], j = m.pairs[2 * k + 1];
-        long double sum = 0, size = m.length[k] * (tension[i] + tension[j]);
-        for (int c = 0; c < 3; ++c) {
-            const long double d = (long double)m.r[3 * j + c] - m.r[3 * i + c], dv = m.v[3 * j + c] - m.v[3 * i + c];
-            const long double a = (long double)m.f[3 * j + c] + g[3 * j + c] - m.f[3 * i + c] - g[3 * i + c];
-            sum += d * a + dv * dv;
-            size +=
-                fabsl(d) * (fabsl(m.f[3 * j + c]) + fabsl(g[3 * j + c]) + fabsl(m.f[3 * i + c]) + fabsl(g[3 * i + c])) +
-                dv * dv;
-        }
-        CHECK_AT_MOST(fabsl(sum), 4 * DBL_EPSILON * size);
-    }
+    check_rounding_left(&m, lambda, g);
+    hol_factors *factors;
+    CHECK(hol_factors_create(chains, &factors));
+    CHECK(hol_factors_update(factors, m.r));
+    CHECK(hol_factors_forces(factors, m.v, m.f, lambda, NULL, g, HOL_WRITE, NULL));
+    check_rounding_left(&m, lambda, g);
+    hol_factors_destroy(factors);
     CHECK_FAILS(HOL_ERR_MEMORY, hol_metric(chains, m.r, 1, NULL, NULL, g, NULL, HOL_WRITE));
     assert_message_names("metric of a network");
-    free(lambda), free(g), free(tension);
+    free(lambda), free(g);
     hol_chains_destroy(chains);
     molecule_free(&m);
 }

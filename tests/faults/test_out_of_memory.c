@@ -88,36 +88,58 @@ static void fail_each_of_all(const assembly *a, const char *name)
     hol_inverse_destroy(prepared);
 }
 
+/** Its atoms with n other bonds, as long as these are there; `pairs` is kept for the operations. */
+static void bond_anew(assembly *a, int64_t n, int64_t *pairs)
+{
+    static int64_t *kept;
+    free(a->length);
+    a->length = malloc((size_t)n * sizeof *a->length);
+    for (int64_t k = 0; k < n; ++k) {
+        double square = 0;
+        for (int i = 0; i < 3; ++i) {
+            const double d = a->r[3 * pairs[2 * k + 1] + i] - a->r[3 * pairs[2 * k] + i];
+            square += d * d;
+        }
+        a->length[k] = sqrt(square);
+    }
+    hol_chains_destroy(a->chains);
+    a->n_bonds = n;
+    CHECK(hol_chains_create(a->n_atoms, a->mass, &a->chains));
+    CHECK(hol_chains_add_bonds(a->chains, n, pairs, a->length));
+    free(kept);
+    pairs_of_bonds = kept = pairs;
+}
+
 /** Chains turned into molecules: some closed to rings, some with a triangle, two that share a fixed atom; no order. */
 static assembly molecules(void)
 {
     enum { CHAINS = 9, BONDS = 12, ATOMS = BONDS + 1 };
     assembly a = assembly_of_kind(CHAIN_COIL, CHAINS, BONDS, BONDS, IN_ORDER, 7);
     int64_t *pairs = malloc(sizeof *pairs * 2 * CHAINS * (BONDS + 1)), n = 0;
-    double *lengths = malloc(sizeof *lengths * CHAINS * (BONDS + 1));
     a.mass[0] = 0;
     for (int64_t k = BONDS; k >= 0; --k)
         for (int64_t c = 0; c < CHAINS; ++c) {
             const int64_t first = c * ATOMS, last = c % 3 == 0 ? 0 : c % 3 == 1 ? first + 2 : first;
             if (k == BONDS && c == 0) continue;
             pairs[2 * n] = k == BONDS && c % 3 == 1 ? first : first + k;
-            pairs[2 * n + 1] = k == BONDS ? last : first + k + 1;
-            double square = 0;
-            for (int i = 0; i < 3; ++i) {
-                const double d = a.r[3 * pairs[2 * n + 1] + i] - a.r[3 * pairs[2 * n] + i];
-                square += d * d;
-            }
-            lengths[n++] = sqrt(square);
+            pairs[2 * n++ + 1] = k == BONDS ? last : first + k + 1;
         }
-    free(a.length);
-    hol_chains_destroy(a.chains);
-    a.length = lengths;
-    a.n_bonds = n;
-    CHECK(hol_chains_create(a.n_atoms, a.mass, &a.chains));
-    CHECK(hol_chains_add_bonds(a.chains, n, pairs, lengths));
-    static int64_t *kept; /* for the operations */
-    free(kept);
-    pairs_of_bonds = kept = pairs;
+    bond_anew(&a, n, pairs);
+    return a;
+}
+
+/** Strands between 40 nodes, four at each, large enough to be worked on as a network. */
+static assembly network(void)
+{
+    enum { NODES = 40, STRANDS = 2 * NODES, BONDS = 5, ATOMS = NODES + STRANDS * (BONDS - 1) };
+    assembly a = assembly_of_kind(CHAIN_COIL, 1, ATOMS - 1, ATOMS - 1, IN_ORDER, 8);
+    int64_t *pairs = malloc(sizeof *pairs * 2 * STRANDS * BONDS), n = 0, next = NODES;
+    for (int64_t s = 0; s < STRANDS; ++s)
+        for (int64_t k = 0, last = s % NODES; k < BONDS; ++k, ++n) {
+            pairs[2 * n] = last;
+            pairs[2 * n + 1] = last = k + 1 < BONDS ? next++ : (s + (s < NODES ? 1 : 9)) % NODES;
+        }
+    bond_anew(&a, n, pairs);
     return a;
 }
 
@@ -148,6 +170,19 @@ static assembly bodies(void)
     return a;
 }
 
+/** Of n operations. */
+static void fail_each_of(const char *const *names, size_t n, assembly a, const char *name)
+{
+    long met = 0;
+    for (size_t k = 0; k < n; ++k)
+        for (size_t i = 0; i < n_operations; ++i)
+            if (strcmp(names[k], operations[i].name) == 0)
+                met += fail_each(operations + i, &a, 0) + fail_each(operations + i, &a, 1);
+    print_message("%s: %ld allocations failed in turn\n", name, met);
+    assert_true(met > 0);
+    assembly_free(&a);
+}
+
 /** What takes bodies. */
 static void every_allocation_of_a_calculation_with_bodies_can_fail(void **state)
 {
@@ -156,15 +191,14 @@ static void every_allocation_of_a_calculation_with_bodies_can_fail(void **state)
         "hol_forces",       "hol_project_velocities", "hol_project_positions",
         "hol_chains_check", "hol_violation",          "hol_solve",
         "hol_reactions",    "hol_forces with a rate", "hol_project_velocities with a rate"};
-    assembly a = bodies();
-    long met = 0;
-    for (size_t k = 0; k < sizeof names / sizeof *names; ++k)
-        for (size_t i = 0; i < n_operations; ++i)
-            if (strcmp(names[k], operations[i].name) == 0)
-                met += fail_each(operations + i, &a, 0) + fail_each(operations + i, &a, 1);
-    print_message("bodies: %ld allocations failed in turn\n", met);
-    assert_true(met > 0);
-    assembly_free(&a);
+    fail_each_of(names, sizeof names / sizeof *names, bodies(), "bodies");
+}
+
+static void every_allocation_of_a_calculation_with_a_network_can_fail(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"hol_forces", "hol_factors_forces", "hol_factors_solve"};
+    fail_each_of(names, sizeof names / sizeof *names, network(), "a network");
 }
 
 static void every_allocation_of_a_calculation_can_fail(void **state)
@@ -373,6 +407,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_allocation_of_a_calculation_can_fail),
         cmocka_unit_test(every_allocation_of_a_calculation_with_bodies_can_fail),
+        cmocka_unit_test(every_allocation_of_a_calculation_with_a_network_can_fail),
         cmocka_unit_test(the_first_calculation_with_a_handle_can_fail),
         cmocka_unit_test(handles_are_not_made_without_memory),
         cmocka_unit_test(a_change_that_finds_no_memory_changes_nothing),

@@ -14,8 +14,8 @@ namespace holonomic::HOL_ISA {
 using namespace graph;
 
 bool is_kept(const EliminationPlan &s) {
-    return s.way.given == Way::triangle || list_of_kept(s) || s.way.given == Way::ring ||
-           s.way.given == Way::network || (!s.alone && s.way.given == Way::tree);
+    return s.way.given == Way::triangle || list_of_kept(s) || s.way.given == Way::ring || s.way.given == Way::network ||
+           (!s.alone && s.way.given == Way::tree);
 }
 
 int64_t kept_scratch_bytes(const EliminationPlan &s) {

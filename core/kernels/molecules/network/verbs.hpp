@@ -1,5 +1,5 @@
-// One large molecule as a network of strands and nodes: the three levels, and kept factors. False where that has not converged: then
-// nothing has been written.
+// One large molecule as a network of strands and nodes: the three levels, and kept factors. False where that has not
+// converged: then nothing has been written.
 #pragma once
 
 #include "core/kernels/call.hpp"
