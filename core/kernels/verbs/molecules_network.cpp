@@ -9,7 +9,7 @@ namespace holonomic::HOL_ISA {
 using namespace graph;
 
 int64_t network_bytes(const NetworkPlan &s) {
-    const int64_t linear = NetLinear::values_of_factor(s) + NetLinear::values(s), newton = NetPositions::values(s);
+    const int64_t linear = NetLinear::values(s), newton = NetPositions::values(s);
     return static_cast<int64_t>(sizeof(double)) * (linear > newton ? linear : newton);
 }
 

@@ -39,12 +39,13 @@ struct Ends {
     Net3 foreign_a, all_a;      // accelerations by foreign ends, and by all, of a vector that is multiplied
     Fronts fronts;
 
-    static int64_t values_of_factor(const NetworkPlan &s, bool symmetric) {
-        return Fronts::values_of_factor(s.fronts, symmetric) + 18 * in_fours(s.n_nodes) +
-               in_fours(3 * static_cast<int64_t>(s.n_tree)) + (symmetric ? 6 : 9) * in_fours(s.n_unknowns);
+    static int64_t values(const NetworkPlan &s, bool symmetric) {
+        return Fronts::values(s.fronts, symmetric) + 27 * in_fours(s.n_nodes) +
+               in_fours(3 * static_cast<int64_t>(s.n_tree)) + 10 * in_fours(s.n_unknowns);
     }
-    static int64_t values(const NetworkPlan &s) {
-        return Fronts::values(s.fronts) + 9 * in_fours(s.n_nodes) + in_fours(s.n_unknowns);
+    static int64_t values_of_factor(const NetworkPlan &s) {
+        return Fronts::values_of_factor(s.fronts) + 18 * in_fours(s.n_nodes) +
+               in_fours(3 * static_cast<int64_t>(s.n_tree)) + 6 * in_fours(s.n_unknowns);
     }
     Ends(const Net &of, bool symmetric, Memory<double> &of_factor, Memory<double> &memory)
         : net(of), s(of.s), D(Net3::take(of_factor, s.n_unknowns)),

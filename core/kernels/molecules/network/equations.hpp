@@ -30,7 +30,7 @@ struct NetEquations {
         return Net::values_of_factor(s) + 3 * in_fours(n_rest(s)) + 3 * in_fours(s.n_bonds);
     }
     static int64_t values(const NetworkPlan &s) {
-        return Net::values(s) + 12 * in_fours(n_rest(s)) + 3 * in_fours(s.n_atoms) + 3 * in_fours(s.n_bonds);
+        return Net::values(s) + 15 * in_fours(n_rest(s)) + 3 * in_fours(s.n_atoms) + 6 * in_fours(s.n_bonds);
     }
     NetEquations(const NetworkPlan &plan, const MoleculeLane &l, bool packed, const LongTeam *team, const Box &b,
                  const AtomArray &positions, const Inputs &inputs, int sides, Memory<double> &of_factor,

@@ -26,13 +26,15 @@ struct NetFactor {
     StiffJoints stiff;              // of nodes, then of atoms of trees
     Unknowns unknowns;
 
-    static int64_t values_of_factor(const NetworkPlan &s, bool symmetric) {
-        return (symmetric ? 3 : 5) * in_fours(s.n_bonds) + in_fours(9 * static_cast<int64_t>(s.n_tree)) +
-               StiffJoints::values_of_factor(s.n_nodes + s.n_tree) + Unknowns::values_of_factor(s, symmetric);
+    static int64_t values(const NetworkPlan &s, bool symmetric) {
+        return 5 * in_fours(s.n_bonds) + in_fours(9 * static_cast<int64_t>(s.n_tree)) +
+               in_fours(3 * static_cast<int64_t>(s.n_tree)) + StiffJoints::values(s.n_nodes + s.n_tree) +
+               Unknowns::values(s, symmetric);
     }
-    static int64_t values(const NetworkPlan &s) {
-        return in_fours(3 * static_cast<int64_t>(s.n_tree)) + StiffJoints::values(s.n_nodes + s.n_tree) +
-               Unknowns::values(s);
+    // What is kept of a symmetric one.
+    static int64_t values_of_factor(const NetworkPlan &s) {
+        return 3 * in_fours(s.n_bonds) + in_fours(9 * static_cast<int64_t>(s.n_tree)) +
+               StiffJoints::values_of_factor(s.n_nodes + s.n_tree) + Unknowns::values_of_factor(s);
     }
     // D != b: a matrix that is not symmetric. What solves only read is in the memory of the factor, what they write in
     // the other one.

@@ -24,15 +24,13 @@ struct Fronts {
     Offsets *place;
     int64_t before_stack;  // of a thread's memory
 
-    static int64_t values_of_factor(const FrontPlan &s, bool symmetric) {
+    static int64_t values(const FrontPlan &s, bool symmetric) {
         if (s.n_fronts == 0) return 0;
         const Sizes n = sizes(s);
-        return (symmetric ? 1 : 2) * in_fours(n.entries) + in_fours(n.pivots);
+        return of_factor(n, symmetric) + in_fours(n.waiting) + in_fours(n_rows(s)) +
+               in_fours(4 * static_cast<int64_t>(s.n_fronts));
     }
-    static int64_t values(const FrontPlan &s) {
-        if (s.n_fronts == 0) return 0;
-        return in_fours(sizes(s).waiting) + in_fours(n_rows(s)) + in_fours(4 * static_cast<int64_t>(s.n_fronts));
-    }
+    static int64_t values_of_factor(const FrontPlan &s) { return s.n_fronts == 0 ? 0 : of_factor(sizes(s), true); }
     static int64_t values_of_buffer(const FrontPlan &s) {
         const Sizes n = sizes(s);
         return for_one(n) + in_fours(n.stack);
@@ -122,6 +120,9 @@ private:
             }
         }
         return all;
+    }
+    static int64_t of_factor(const Sizes &n, bool symmetric) {
+        return (symmetric ? 1 : 2) * in_fours(n.entries) + in_fours(n.pivots);
     }
     // What a front is worked on with: the panels of Dense, and its right-hand side.
     static int64_t for_one(const Sizes &n) { return (2 * Dense::panel + 2) * in_fours(n.tallest); }

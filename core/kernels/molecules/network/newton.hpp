@@ -27,8 +27,8 @@ struct NetNewton {
 
     static int32_t n_rest(const NetworkPlan &s) { return s.n_nodes + s.n_tree; }
     static int64_t values(const NetworkPlan &s) {
-        return Net::values_of_factor(s) + Net::values(s) + 6 * in_fours(n_rest(s)) + 11 * in_fours(s.n_bonds) +
-               in_fours(s.n_shares + 1) + NetFactor::values_of_factor(s, false) + NetFactor::values(s);
+        return Net::values(s) + 6 * in_fours(n_rest(s)) + 11 * in_fours(s.n_bonds) + in_fours(s.n_shares + 1) +
+               NetFactor::values(s, false);
     }
     NetNewton(const NetworkPlan &plan, const MoleculeLane &lane, bool packed, const LongTeam *team,
               Memory<double> memory)

@@ -69,11 +69,11 @@ struct NetProof : NetEquations {
     };
 
     static int64_t values_of_factor(const NetworkPlan &s) {
-        return NetEquations::values_of_factor(s) + NetFactor::values_of_factor(s, true);
+        return NetEquations::values_of_factor(s) + NetFactor::values_of_factor(s);
     }
     static int64_t values(const NetworkPlan &s) {
         return NetEquations::values(s) + in_fours(s.n_bonds) + in_fours(n_rest(s)) + in_fours(s.n_shares / 2 + 1) +
-               NetFactor::values(s);
+               NetFactor::values(s, true);
     }
     NetProof(const NetworkPlan &plan, const MoleculeLane &l, bool packed, const LongTeam *team, const Box &b,
              const AtomArray &positions, const Inputs &inputs, int sides, Memory<double> &of_factor,

@@ -25,7 +25,7 @@ struct StiffJoints {
     Pair3<double> *push;  // from the children's y
 
     static int64_t values_of_factor(int32_t n) { return in_fours(18 * static_cast<int64_t>(n)) + in_fours(n / 2 + 1); }
-    static int64_t values(int32_t n) { return in_fours(6 * static_cast<int64_t>(n)); }
+    static int64_t values(int32_t n) { return values_of_factor(n) + in_fours(6 * static_cast<int64_t>(n)); }
     StiffJoints(int32_t n, Memory<double> &of_factor, Memory<double> &memory)
         : joint(reinterpret_cast<Joint *>(of_factor.values(in_fours(18 * static_cast<int64_t>(n))))),
           is(reinterpret_cast<int32_t *>(of_factor.values(in_fours(n / 2 + 1)))),

@@ -14,7 +14,7 @@ struct Net : NetSites {
     mutable bool backwards = false;
 
     static int64_t values_of_factor(const NetworkPlan &s) { return in_fours(s.n_atoms); }
-    static int64_t values(const NetworkPlan &s) { return values_of_buffer(s); }
+    static int64_t values(const NetworkPlan &s) { return values_of_buffer(s) + in_fours(s.n_atoms); }
     // memory: all of a thread's. of_factor: what is kept with a factor; it may be the same.
     Net(const NetworkPlan &plan, const MoleculeLane &l, bool packed, const LongTeam *threads, Memory<double> &of_factor,
         Memory<double> &memory)

@@ -15,8 +15,8 @@ struct Unknowns : Ends {
     double *r, *shadow, *p, *p_node, *v, *s_node, *t;  // s takes the place of r
     mutable bool direct = false, tried = false;        // fronts are used; or have been tried
 
-    static int64_t values(const NetworkPlan &s) {
-        return Ends::values(s) + in_fours(3 * static_cast<int64_t>(s.n_node_shares)) +
+    static int64_t values(const NetworkPlan &s, bool symmetric) {
+        return Ends::values(s, symmetric) + in_fours(3 * static_cast<int64_t>(s.n_node_shares)) +
                9 * in_fours(s.n_unknowns + 3 * s.fronts.n_hubs);
     }
     Unknowns(const Net &of, bool symmetric, Memory<double> &of_factor, Memory<double> &memory)
