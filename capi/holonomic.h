@@ -1050,11 +1050,11 @@ HOL_API void hol_factors_destroy(hol_factors *factors);
  * of the set, and keeps 5 to 20 doubles per bond and 4 per atom, more where cycles fill. So factors pay from about
  * three solves on.
  *
- * Factors are kept for chains, trees, rings and triangles, and for all molecules with cycles but networks; forces of
- * chains of more than 256 bonds, and of trees of more than 2048, do not use them. For all others only the positions are
- * kept, and solves cost as much as hol_forces and hol_solve: networks, rigid bodies, trees with an atom of hundreds of
- * bonds, molecules that need more than plain products, and all molecules of a set in which molecules share fixed atoms.
- * All results are as accurate as those of hol_forces and hol_solve.
+ * Factors are kept for chains, trees, rings and triangles, and for all molecules with cycles; forces of chains of more
+ * than 256 bonds, and of trees of more than 2048, do not use them. Lattices gain most, gels of flexible strands least.
+ * For all others only the positions are kept, and solves cost as much as hol_forces and hol_solve: rigid bodies, trees
+ * with an atom of hundreds of bonds, molecules that need more than plain products, and all molecules of a set in which
+ * molecules share fixed atoms. All results are as accurate as those of hol_forces and hol_solve.
  * @param[in,out] factors
  * @param[in]     r        positions [n_atoms][3]. Copied
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_NOT_FINITE; HOL_ERR_DEGENERATE; HOL_ERR_MEMORY. After a bad molecule all others
