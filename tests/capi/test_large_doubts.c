@@ -6,6 +6,7 @@
 
 #include "check.h"
 #include "large.h"
+#include "molecule_solution.h"
 #include "random.h"
 
 /** Nearly straight strands between nodes anywhere, four at each. */
@@ -126,11 +127,58 @@ static void a_ladder_is_solved(void **state)
     check_equations_are_solved(ladder(quick_run() ? 2000 : 40000));
 }
 
+/** Three arms that divide in two, level by level. */
+static molecule dendrimer(int levels)
+{
+    molecule m = molecule_empty();
+    random_stream random = random_seed(3);
+    double at[3] = {0, 0, 0}, u[3];
+    int64_t first = molecule_add_atom(&m, 12, at), end = first + 1;
+    for (int level = 0; level < levels; ++level) {
+        const int64_t last = end;
+        for (int64_t i = first; i < last; ++i)
+            for (int arm = 0; arm < (level == 0 ? 3 : 2); ++arm) {
+                random_direction(&random, u);
+                end = molecule_grow(&m, i, 12, 1, u) + 1;
+            }
+        first = last;
+    }
+    molecule_finish(&m, &random);
+    return m;
+}
+
+/** A third of the sides is a thousandth of the others: multipliers that are small differences, whose scales only a row
+ * of the inverse tells. */
+static void uneven_sides_of_a_large_dendrimer_are_solved(void **state)
+{
+    (void)state;
+    molecule m = dendrimer(quick_run() ? 5 : 10);
+    const size_t n = (size_t)m.n_bonds;
+    hol_chains *chains = large_chains(&m);
+    double *rhs = untouched(n), *lambda = untouched(n), *again = untouched(n);
+    const long double unit = oracle_bound(m.n_bonds) * DBL_EPSILON;
+    random_stream random = random_seed(5);
+    for (size_t k = 0; k < n; ++k) rhs[k] = random_normal(&random) * (random_uniform(&random) < 0.3 ? 1e-3 : 1);
+    const molecule_problem problem = molecule_problem_of(&m);
+    molecule_solution exact;
+    assert_int_equal(molecule_solve(&problem, rhs, &exact), 0);
+    CHECK(hol_solve(chains, m.r, rhs, lambda, NULL, HOL_WRITE, NULL));
+    for (size_t k = 0; k < n; ++k) CHECK_AT_MOST(fabsl(lambda[k] - exact.lambda[k]), unit * exact.lambda_scale[k]);
+    CHECK(hol_chains_set_threads(chains, 3));
+    CHECK(hol_solve(chains, m.r, rhs, again, NULL, HOL_WRITE, NULL));
+    assert_same_bits(lambda, again, n);
+    molecule_solution_free(&exact);
+    hol_chains_destroy(chains);
+    free(rhs), free(lambda), free(again);
+    molecule_free(&m);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(straight_strands_are_solved),
         cmocka_unit_test(a_ladder_is_solved),
+        cmocka_unit_test(uneven_sides_of_a_large_dendrimer_are_solved),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -12,9 +12,24 @@ inline BondRow<double> one_of(const BondRow<vec> &row, int i) {
     return {one_of(row.d, i), row.q[i], row.E[i], row.t[i], row.l[i], row.r[i]};
 }
 
+// Bonds, by element, whose multipliers are small differences as far as their atoms can tell, with the least scales that
+// would do.
+struct SmallDifferences {
+    static constexpr int most = 4;
+    int32_t n, element[most];
+    double least[most];
+    bool note(int32_t e, double scale) {
+        if (n == most) return false;
+        element[n] = e;
+        least[n++] = scale;
+        return true;
+    }
+};
+
 // Of a tile, or of the top. An atom's number in `cancelling` is that of its step times that of lanes, plus its lane.
 struct TreeFlagged {
     Cancelling *cancelling;
+    SmallDifferences *small;
     double *margin;  // negative if the tree is to be left to the extended-precision solver
 
     template <int k>
@@ -40,6 +55,9 @@ struct TreeFlagged {
     // Atoms of more than three children have no other way.
     HOL_FORCED vec end(const BatchJoint &joint, const Values<0> &, vec own, vec margin_so_far) const {
         return held_lanes(joint.step) ? splat(-1) : min(own, margin_so_far);
+    }
+    void note_small(int32_t element, double least, double size) const {
+        if (!(least <= size) && !small->note(element, least)) *margin = -1;
     }
     // The lanes of a step that have been noted.
     unsigned held_lanes(int32_t step) const {
@@ -78,7 +96,7 @@ struct TreeFlagged {
     }
 
     // The first time an atom is noted, to be eliminated in extended precision the next time. Then products are right,
-    // and a result must not be a small difference of what comes up and what comes down.
+    // and a result must not be a small difference of what comes up and what comes down, beside its scale.
     __attribute__((noinline)) void note_cancelling(const BatchJoint &joint, int k, unsigned which) const {
         vec own = splat(1);
         joint.flag_cancelling(k, which, own);
@@ -91,9 +109,11 @@ struct TreeFlagged {
             if (!cancelling->holds(joint.step * W + i)) *margin = -1;
             for (int a = 0; a < joint.children(i); ++a) {
                 const BondRow<vec> &row = joint.child[a];
+                const int32_t element = joint.element(a, i, k);
                 const double t = row.t[i], down = row.l[i] * joint.top.t[i],
-                             size = abs(t) + joint.terms_of_bond(joint.element(a, i, k));
-                if (!((abs(t - down) + abs(down)) * sqrt(joint.x.per_cancelled2) <= size)) *margin = -1;
+                             size = abs(t) + joint.terms_of_bond(element) / joint.diagonal_of(element),
+                             terms = abs(t - down) + abs(down);
+                note_small(element, sqrt(joint.x.per_cancelled2) * terms, size);
             }
         }
     }

@@ -12,6 +12,7 @@ struct LargeTree {
     typedef BatchTrees::Range Range;
     struct Tile {
         Cancelling cancelling;
+        SmallDifferences small;
         double margin;
     };
     BatchLinear &z;
@@ -41,21 +42,23 @@ struct LargeTree {
         share_out(team, top(), body);
     }
 
+    TreeFlagged flagged(int32_t p) const { return {&tile[p].cancelling, &tile[p].small, &tile[p].margin}; }
+
     // The top is loaded before the tiles, which add to it.
     void load(int32_t p) const {
         z.load(z.tile(p));
-        tile[p].cancelling.n_extended = 0;
+        tile[p].cancelling.n_extended = tile[p].small.n = 0;
         tile[p].margin = 1;
     }
     void eliminate(int32_t p) const {
         const Range range = z.tile(p);
         Tile &own = tile[p];
-        const vec margin = z.up(range, memory(p), splat(1), TreeFlagged{&own.cancelling, &own.margin});
+        const vec margin = z.up(range, memory(p), splat(1), flagged(p));
         if (any(less(margin, vec{}))) own.margin = -1;
     }
     void substitute_back(int32_t p) const {
         Tile &own = tile[p];
-        z.down<true>(z.tile(p), TreeFlagged{&own.cancelling, &own.margin});
+        z.down<true>(z.tile(p), flagged(p));
         if (any(~z.finite_in(z.tile(p)))) own.margin = -1;
     }
 
@@ -91,16 +94,55 @@ struct LargeTree {
     // Returns whether plain arithmetic answers for the tree.
     bool load_and_solve() const {
         do {
-            load(top());
-            for_tiles([&](int32_t p) {
-                load(p);
-                eliminate(p);
-            });
-            eliminate(top());
-            substitute_back(top());
-            for_tiles([&](int32_t p) { substitute_back(p); });
+            load_and_solve_once();
         } while (to_be_repeated());
+        if (!is_good() || !has_small()) return is_good();
+        if (!are_small_beside_scales()) return false;
+        load_and_solve_once();  // once more, as rows of the inverse have taken the place of the solution
         return is_good();
+    }
+    void load_and_solve_once() const {
+        load(top());
+        for_tiles([&](int32_t p) {
+            load(p);
+            eliminate(p);
+        });
+        eliminate(top());
+        substitute_back(top());
+        for_tiles([&](int32_t p) { substitute_back(p); });
+    }
+
+    bool has_small() const {
+        for (int32_t p = 0; p <= top(); ++p)
+            if (tile[p].small.n > 0) return true;
+        return false;
+    }
+    // Whether bonds whose multipliers are small differences have scales that do, theory (53a): |A^-1| S, a row of the
+    // inverse each.
+    __attribute__((noinline)) bool are_small_beside_scales() const {
+        for (int32_t p = 0; p <= top(); ++p)
+            for (int i = 0; i < tile[p].small.n; ++i) {
+                find_row_of_inverse(tile[p].small.element[i]);
+                if (!(tile[p].small.least[i] <= terms_by_row())) return false;
+            }
+        return true;
+    }
+    // In t of the rows.
+    void find_row_of_inverse(int32_t element) const {
+        for (int32_t place = 0; place < z.f.n_places; ++place) z.row[place].t = vec{};
+        z.row[element / W].t[element % W] = 1;
+        for_tiles([&](int32_t p) { z.substitute(z.tile(p), memory(p)); });
+        z.substitute(z.tile(top()), memory(top()));
+        z.down<false>(z.tile(top()), flagged(top()));
+        for_tiles([&](int32_t p) { z.down<false>(z.tile(p), flagged(p)); });
+    }
+    // sum |t| S over all bonds
+    double terms_by_row() const {
+        const BatchJoint joint(z, 0);
+        double sum = 0;
+        for (int32_t e = 0; e < z.f.n_places * W; ++e)
+            if (z.f.held[e / W] >> e % W & 1) sum += abs(z.row[e / W].t[e % W]) * joint.terms_of_bond(e);
+        return sum;
     }
 
     // Calls write(range) for all.

@@ -75,23 +75,28 @@ struct BatchJoint {
             const vec left = left_of(a < 0 ? top : child[a], shared);
             for (unsigned rest = which & bits(less(left, vec{})); rest; rest &= rest - 1) {
                 const int i = __builtin_ctz(rest);
-                const double own = terms_of_bond(element(a < 0 ? k : a, i, k));
+                const int32_t e = element(a < 0 ? k : a, i, k);
+                const double own = terms_of_bond(e) / diagonal_of(e);
                 if (!(left[i] + own * own >= 0)) margin[i] = -1;
             }
         }
     }
-    // Of its right-hand side in absolute values, in units of its diagonal element.
+    // Of its right-hand side in absolute values.
     double terms_of_bond(int32_t element) const {
         const int i = element % W;
-        const BondRow<vec> &its = x.row[element / W];
+        if (x.has(given)) return __builtin_fabs(0.5 * x.in.rhs[x.bond_of(i, element / W)]);
+        const vec3 &its = x.row[element / W].d;
         int32_t atom[2];
         x.ends(element, atom);
         const int64_t number[2] = {x.at.number(i, atom[0]), x.at.number(i, atom[1])};
-        const double mass[2] = {x.lane[i].w[atom[0]], x.lane[i].w[atom[1]]},
-                     d[3] = {its.d.x[i], its.d.y[i], its.d.z[i]};
-        const double A = (mass[0] + mass[1]) * its.q[i];
-        if (x.has(given)) return __builtin_fabs(0.5 * x.in.rhs[x.bond_of(i, element / W)]) / A;
-        return terms_of(x.in, d, number, mass) / A;
+        const double mass[2] = {x.lane[i].w[atom[0]], x.lane[i].w[atom[1]]}, d[3] = {its.x[i], its.y[i], its.z[i]};
+        return terms_of(x.in, d, number, mass);
+    }
+    double diagonal_of(int32_t element) const {
+        int32_t atom[2];
+        x.ends(element, atom);
+        const double *const w = x.lane[element % W].w;
+        return (w[atom[0]] + w[atom[1]]) * x.row[element / W].q[element % W];
     }
 };
 
