@@ -1,7 +1,7 @@
 #include <cstdio>
 
 #include "boundary.hpp"
-#include "core/run/kernel_choice.hpp"
+#include "core/kernel_choice.hpp"
 
 namespace holonomic {
 

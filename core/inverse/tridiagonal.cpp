@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "core/error.hpp"
-#include "core/run/kernel_choice.hpp"
+#include "core/kernel_choice.hpp"
 
 namespace holonomic {
 

@@ -1,4 +1,4 @@
-# The kernels: the same sources once per instruction set, each into a namespace of its own; run/kernel_choice.cpp picks a set at
+# The kernels: the same sources once per instruction set, each into a namespace of its own; kernel_choice.cpp picks a set at
 # run time. Only these may be compiled for more than the baseline, so that no shared inline function of theirs can end up in
 # another path.
 
@@ -132,7 +132,7 @@ function(holonomic_kernels name lanes)
     set(extended_solvers ${extended_solvers} ${set_EXTENDED} PARENT_SCOPE)
 endfunction()
 
-# The sets, the one to be preferred first; run/kernel_choice.cpp has the measurements, and where another runs.
+# The sets, the one to be preferred first; kernel_choice.cpp has the measurements, and where another runs.
 set(HOLONOMIC_INSTRUCTION_SETS "avx2;avx512vl;scalar" CACHE STRING "Kernels to compile beside those that every processor of this kind runs")
 set(HOLONOMIC_X86_64 OFF)
 set(HOLONOMIC_AARCH64 OFF)

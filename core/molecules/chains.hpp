@@ -8,12 +8,12 @@
 
 #include "core/caller/box.hpp"
 #include "core/kernels/call.hpp"
-#include "core/molecules/asked/labels.hpp"
 #include "core/molecules/given/atom_use.hpp"
 #include "core/molecules/given/copied.hpp"
 #include "core/molecules/given/find.hpp"
 #include "core/molecules/given/group.hpp"
 #include "core/molecules/given/kind.hpp"
+#include "core/molecules/given/labels.hpp"
 #include "core/molecules/given/masses.hpp"
 #include "core/molecules/given/molecule.hpp"
 #include "core/molecules/given/shape.hpp"

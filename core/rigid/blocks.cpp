@@ -4,7 +4,7 @@
 #include <cmath>
 #include <type_traits>
 
-#include "core/run/kernel_choice.hpp"
+#include "core/kernel_choice.hpp"
 
 namespace holonomic::rigid {
 

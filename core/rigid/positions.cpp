@@ -3,11 +3,11 @@
 #include <limits>
 
 #include "core/index.hpp"
+#include "core/kernel_choice.hpp"
 #include "core/rigid/run.hpp"
 #include "core/rigid/verbs.hpp"
 #include "core/rigid/within.hpp"
 #include "core/run/execute.hpp"
-#include "core/run/kernel_choice.hpp"
 
 namespace holonomic::rigid {
 

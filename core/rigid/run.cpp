@@ -6,10 +6,10 @@
 #include <cstdio>
 #include <new>
 
+#include "core/kernel_choice.hpp"
 #include "core/rigid/blocks.hpp"
 #include "core/rigid/parts.hpp"
 #include "core/run/bond_words.hpp"
-#include "core/run/kernel_choice.hpp"
 #include "core/run/outcomes.hpp"
 #include "core/run/thread_memory.hpp"
 #include "core/run/threads.hpp"

@@ -12,11 +12,10 @@ namespace holonomic::rigid {
 
 namespace {
 
-// Pivots below this part of the diagonal are too inaccurate as doubles; below the other one, rows depend, as they do
-// where less than that is left of one once all others are gone.
-constexpr double least_plain = 1e-9, least_wide = 1e-24;
-// Corrections end here: beyond what a double holds, so that small multipliers beside large ones are right, too.
-constexpr double small_correction = 1e-19;
+using plain::bodies::least_plain;
+using plain::bodies::least_wide;
+using plain::bodies::small_correction;
+using plain::bodies::small_residual;
 
 double dot3(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
@@ -155,8 +154,7 @@ Outcome System::restore_with(const Factor<T> &f, T *x, const Conformation &from,
         *error = residuals(to, residual_);
         if (!std::isfinite(*error)) return Outcome::not_finite;
         if (*error <= tolerance) return Outcome::good;
-        // Where residuals do not fall any more, near the end of twice the precision, all is done.
-        if (*error < 1e-20 && *error > 0.1 * before) return Outcome::good;
+        if (*error<small_residual && * error> 0.1 * before) return Outcome::good;
         if (*iterations >= most_iterations) return Outcome::no_convergence;
         before = *error;
         differentiate(to);

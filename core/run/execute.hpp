@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <new>
 
+#include "core/kernel_choice.hpp"
 #include "core/kernels/tally.hpp"
 #include "core/molecules/chains.hpp"
-#include "core/run/kernel_choice.hpp"
 #include "core/run/thread_memory.hpp"
 
 namespace holonomic {

@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <initializer_list>
 
-#include "core/run/kernel_choice.hpp"
+#include "core/kernel_choice.hpp"
 
 using namespace holonomic;
 

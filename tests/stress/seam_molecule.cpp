@@ -106,7 +106,7 @@ void complete(seam_molecule &m)
 
 const char *seam_shape_name(int shape)
 {
-    static const char *const names[N_SEAM_SHAPES] = {"arms", "paths", "pieces", "tiles"};
+    static const char *const names[N_SEAM_SHAPES] = {"arms", "paths", "tiles of a tree", "tiles"};
     return names[shape];
 }
 
@@ -131,7 +131,7 @@ seam_graph make_seam_graph(seam_shape shape)
     std::vector<std::pair<std::int64_t, std::int64_t>> bonds;
     if (shape == ARMS) grow_runs(g, {90, 60, 700, 42, 1200, 150, 41, 300, 1100, 50, 45, 64}, 3);
     if (shape == PATHS) grow_runs(g, {1400, 600, 130, 900, 800, 200, 1500, 129}, 3);
-    if (shape == PIECES) {
+    if (shape == TREE_TILES) {
         std::vector<std::int64_t> lengths;
         for (std::int64_t n = 0, k = 0; n < 17500; n += lengths.back(), ++k) lengths.push_back(1 + k * k % 31);
         grow_runs(g, lengths, 2);

@@ -13,7 +13,7 @@
 namespace stress
 {
 
-enum seam_shape { ARMS, PATHS, PIECES, TILES, N_SEAM_SHAPES };
+enum seam_shape { ARMS, PATHS, TREE_TILES, TILES, N_SEAM_SHAPES };
 enum seam_kind { FIXED_SEAM, SQUARE_SEAM, STRAIGHT_SEAM, UNEQUAL_SEAM, PULLED_SEAM, N_SEAM_KINDS };
 const char *seam_shape_name(int shape);
 const char *seam_kind_name(int kind);

@@ -172,7 +172,7 @@ int main(int argc, char **argv)
     sets.erase(std::remove(sets.begin(), sets.end(), "scalar"), sets.end());  // it has none of molecules
     int round = 0, bad = 0;
     for (int shape = 0; shape < N_SEAM_SHAPES; ++shape) {
-        const bool large = shape == PIECES || shape == TILES;
+        const bool large = shape == TREE_TILES || shape == TILES;
         const seam_graph g = make_seam_graph(static_cast<seam_shape>(shape));
         const std::vector<std::vector<std::int64_t>> seams = seams_of(static_cast<seam_shape>(shape), g);
         for (int kind = 0; kind < N_SEAM_KINDS; ++kind)

@@ -93,7 +93,7 @@ std::vector<atoms> seams_of(seam_shape shape, const seam_graph &g)
     std::vector<atoms> all;
     if (shape == ARMS) add_arms(*s, all);
     if (shape == PATHS && s->paths) add_paths(*s->paths, all);
-    if (shape == PIECES && s->n_tiles > 1) add_tiles_of_tree(*s, all);
+    if (shape == TREE_TILES && s->n_tiles > 1) add_tiles_of_tree(*s, all);
     if (shape == TILES && s->ldl && !s->paths) add_tiles(*s, all);
     bool cut = !all.empty();
     for (const atoms &list : all) cut = cut && !list.empty();

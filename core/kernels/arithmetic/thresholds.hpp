@@ -1,6 +1,7 @@
 // When plain products of doubles do not answer for a molecule any more, so that its lane, atom or bond is done in twice
-// the precision: every limit, with the equation of docs/theory.md whose error it bounds. What is looked at stands where
-// it is computed; here are the numbers alone. docs/stability.md derives them.
+// the precision; and when twice the precision, or four times, refuses it: every limit, with the equation of
+// docs/theory.md whose error it bounds. What is looked at stands where it is computed; here are the numbers alone.
+// docs/stability.md derives them.
 //
 // They share one promise: a multiplier is right to 16 + sqrt(n) roundings of its scale
 // (tests/oracle/molecules/README.md).
@@ -92,5 +93,47 @@ constexpr double least_kept = 1.0 / 12;
 // In twice the precision (54a): less than a few roundings of a double are left while no ratio is larger. Four times the
 // precision does what is beyond.
 constexpr double largest_loss = 0x1p46;
+
+#ifdef HOL_QUAD_DOUBLE
+constexpr bool is_quad_double = true;
+#else
+constexpr bool is_quad_double = false;
+#endif
+
+namespace extended {
+
+// (54): the inertia of an atom's arms, the sum of rho D.B, is all that is used of many arms while it is below this.
+constexpr double mild = 0x1p20;
+// An arm whose effective inverse mass E is below this part of w d.d does not give way at all.
+constexpr double stiff = 0x1p-280;
+// Arms that don't give way are linearly dependent if their Gram determinant <T,T> is below this. Two bonds in line to
+// 1e-12, and a third one as near to their plane, are still solved. `coplanar`: as a sum of squares, which subtracts
+// nothing.
+constexpr double flat = 1e-52, coplanar = is_quad_double ? 1e-80 : flat;
+// (52), trees: if a pivot is below this part of the diagonal, its bond is a combination of others; in twice the
+// precision it may be that its digits do not tell. Nothing is subtracted, so that any pivot above is right.
+constexpr double vanishing = is_quad_double ? 1e-80 : 1e-56;
+// (55), cores: a pivot below this part of its diagonal element is refused; four times the precision decides where twice
+// would. Constraints that depend on each other leave 1e-30, the rounding of the coordinates being that of a sine
+// squared. How small a pivot is depends on the order: the least of a molecule may be a hundredth of what it is in
+// another one.
+constexpr double redundant = is_quad_double ? 1e-26 : 1e-22;
+// (57), rings: three points are refused as in line if the square of the sine is below this; so is a ring of bonds all
+// in line.
+constexpr double straight = 1e-28;
+
+}  // namespace extended
+
+namespace bodies {
+
+// Molecules with rigid bodies, docs/rigid.md: pivots below this part of the diagonal are too inaccurate as doubles;
+// below the other one, rows depend, as they do where less than that is left of one once all others are gone.
+constexpr double least_plain = 1e-9, least_wide = 1e-24;
+// Corrections end here: beyond what a double holds, so that small multipliers beside large ones are right, too.
+constexpr double small_correction = 1e-19;
+// Residuals below this are near the end of twice the precision. Where they do not fall any more, all is done.
+constexpr double small_residual = 1e-20;
+
+}  // namespace bodies
 
 }  // namespace holonomic::HOL_ISA

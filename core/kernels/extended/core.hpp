@@ -92,11 +92,6 @@ HOL_NOINLINE void eliminate_column(const Core &x, int32_t c, bool &good) {
     good = good && is_finite(r.hi);
 }
 
-// A pivot below this part of its diagonal element is refused; four times the precision decides where twice would.
-// Constraints that depend on each other leave 1e-30, the rounding of the coordinates being that of a sine squared. How
-// small a pivot is depends on the order: the least of a molecule may be a hundredth of what it is in another one.
-constexpr double redundant = is_quad_double ? 1e-26 : 1e-22;
-
 HOL_NOINLINE bool factorize(const Core &x, Loss &loss, int32_t &bad) {
     bool good = true;
     for (int32_t c = 0; c < x.plan->n_core; ++c) {

@@ -15,14 +15,6 @@ namespace holonomic::HOL_ISA::extended {
 // An atom of more bonds is done by its inertia alone, the sum of rho D B^T: O(n) instead of O(n^3) terms per arm. That
 // has digits enough while it is no larger than `mild`; beyond, only atoms of still more bonds make do with it.
 constexpr int few_arms = 16, most_arms = most_in_table;
-constexpr double mild = 0x1p20;
-
-// An arm with an E below this part of w d.d does not give way at all.
-constexpr double stiff = 0x1p-280;
-
-// Arms that don't give way are linearly dependent if their Gram determinant is below this. Two bonds in line to 1e-12,
-// and a third one as near to their plane, are still solved. `coplanar`: as a sum of squares, which subtracts nothing.
-constexpr double flat = 1e-52, coplanar = is_quad_double ? 1e-80 : flat;
 
 // Among many arms, those that don't give way, three at most, take their directions out of all the others.
 struct Rigid {

@@ -38,9 +38,6 @@ HOL_INLINE int32_t joint_atom(const ScaledMolecule &m, const Ring &x, int32_t k)
     return x.backwards[k] ? m.plan.atom_j[bond] : m.plan.atom_i[bond];
 }
 
-// Three points are refused as in line if the square of the sine is below this; so is a ring of bonds all in line.
-constexpr double straight = 1e-28;
-
 HOL_NOINLINE bool measure(const ScaledMolecule &m, const Ring &x) {
     const ExtendedPlan &plan = m.plan;
     int32_t atom = plan.atom_i[plan.ring[0]];  // ring begins with bond 0, which leaves it at its atom_j

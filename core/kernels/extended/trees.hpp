@@ -74,10 +74,6 @@ HOL_NOINLINE Tree take_tree(const ExtendedPlan &plan, ByteArena &memory) {
     return x;
 }
 
-// If a pivot is below this part of the diagonal, its bond is a combination of others; in twice the precision it may be
-// that its digits do not tell. Nothing is subtracted, so that any pivot above is right.
-constexpr double vanishing = is_quad_double ? 1e-80 : 1e-56;
-
 // Calls body(i) for the atoms from the root outwards.
 template <class Body>
 HOL_INLINE bool from_the_root(const ExtendedPlan &plan, const Body &body) {

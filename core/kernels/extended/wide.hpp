@@ -11,13 +11,11 @@ namespace holonomic::HOL_ISA {
 
 #ifdef HOL_QUAD_DOUBLE
 
-constexpr bool is_quad_double = true;
 typedef QuadDouble Wide;
 HOL_INLINE Wide wide(double a) { return as_quad_double(a); }
 
 #else
 
-constexpr bool is_quad_double = false;
 typedef Pair<double> Wide;
 HOL_INLINE Wide wide(double a) { return {a, 0}; }
 // What its first word leaves of a number.

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "core/error.hpp"
-#include "core/molecules/asked/labels.hpp"
+#include "core/molecules/given/labels.hpp"
 #include "core/molecules/given/shape.hpp"
 
 namespace holonomic {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/error.hpp"
-#include "core/molecules/asked/labels.hpp"
+#include "core/molecules/given/labels.hpp"
 #include "core/molecules/given/masses.hpp"
 #include "core/molecules/given/shape.hpp"
 

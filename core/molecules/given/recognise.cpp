@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "core/index.hpp"
-#include "core/molecules/asked/count.hpp"
+#include "core/molecules/given/count.hpp"
 
 namespace holonomic {
 

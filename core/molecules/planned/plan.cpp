@@ -6,10 +6,10 @@
 #include <unordered_map>
 
 #include "core/index.hpp"
+#include "core/kernel_choice.hpp"
 #include "core/molecules/chains.hpp"
 #include "core/molecules/planned/way.hpp"
 #include "core/plan/elimination.hpp"
-#include "core/run/kernel_choice.hpp"
 
 namespace holonomic {
 

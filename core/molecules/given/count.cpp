@@ -1,4 +1,4 @@
-#include "core/molecules/asked/count.hpp"
+#include "core/molecules/given/count.hpp"
 #include "core/index.hpp"
 
 #include <algorithm>

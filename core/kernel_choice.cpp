@@ -19,7 +19,7 @@
 //          1 x 1,000,000      12.9 28.4 19.5      12.8 26.2 19.6
 //
 // Smallest of several, in turns in one process.
-#include "core/run/kernel_choice.hpp"
+#include "core/kernel_choice.hpp"
 
 #include <cstdio>
 #include <cstdlib>

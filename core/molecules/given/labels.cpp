@@ -1,4 +1,4 @@
-#include "core/molecules/asked/labels.hpp"
+#include "core/molecules/given/labels.hpp"
 #include "core/index.hpp"
 
 #include <cstdio>
