@@ -8,22 +8,18 @@
 #include "core/rigid/parts.hpp"
 #include "core/rigid/verbs.hpp"
 #include "core/run/diagnose.hpp"
-#include "core/run/execute.hpp"
 #include "core/run/outcomes.hpp"
-#include "core/run/rescale.hpp"
-#include "core/run/staging.hpp"
 #include "core/run/thread_memory.hpp"
+#include "core/run/verb_work.hpp"
 #include "core/solve.hpp"
 
 namespace holonomic {
 
 namespace {
 
-struct ForcesWork final : Work {
-    const Variants<ForcesCall> calls;
-    const Kernels &k = kernels();
+struct ForcesWork final : VerbWork<ForcesCall, &MoleculeKernels::forces, &Kernels::forces, &Kernels::long_forces> {
     ForcesWork(const ForcesCall &call, Staging &staging)
-        : calls(
+        : VerbWork(
               call, staging,
               [&](ForcesCall &c) {
                   c.lambda = staging.results(call.lambda);
@@ -35,39 +31,6 @@ struct ForcesWork final : Work {
                   c.f = staging.atoms(call.f);
                   c.g = staging.summed_atoms(call.g, call.add);
               }) {}
-    void unit(const Unit &unit, int where, double *scratch, Tally &tally) const override {
-        kernels(unit).forces(calls[where], unit, scratch, tally);
-    }
-    void unit(const MoleculeUnit &unit, int where, double *scratch, Tally &tally) const override {
-        k.molecules.forces(calls[where], unit, scratch, tally);
-    }
-    bool walks_batches() const override { return true; }
-    std::int64_t long_blocks(std::int64_t n) const override { return k.long_forces.blocks(n); }
-    std::int64_t long_bytes(std::int64_t n) const override { return k.long_forces.bytes(n); }
-    void long_chain(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const override {
-        work_on_long(calls[where], lane, team, store, tally);
-    }
-    void work_on_long(const ForcesCall &call, const Lane &lane, const Team &team, double *store, Tally &tally) const {
-        solve_long_chain(k.long_forces, call, lane, team, store, tally);
-    }
-    bool rescales() const override { return true; }
-    bool again(const Unit &one, int where, double *scratch, Tally &tally) const override {
-        return work_in_ordinary_units(calls[where], one, tally, [&](const ForcesCall &c, const Unit &unit, Tally &own) {
-            kernels(unit).forces(c, unit, scratch, own);
-        });
-    }
-    bool again(const MoleculeUnit &one, int where, double *scratch, Tally &tally) const override {
-        return work_in_ordinary_units(calls[where], one, tally,
-                                      [&](const ForcesCall &c, const MoleculeUnit &unit, Tally &own) {
-                                          k.molecules.forces(c, unit, scratch, own);
-                                      });
-    }
-    bool again(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const override {
-        return work_in_ordinary_units(calls[where], Unit{&lane, 1, false, false}, tally,
-                                      [&](const ForcesCall &c, const Unit &unit, Tally &own) {
-                                          work_on_long(c, unit.lanes[0], team, store, own);
-                                      });
-    }
 };
 
 // With a box that changes, by the equations for given right-hand sides: such forces are asked for now and then.

@@ -9,21 +9,17 @@
 #include "core/rigid/parts.hpp"
 #include "core/rigid/verbs.hpp"
 #include "core/run/diagnose.hpp"
-#include "core/run/execute.hpp"
 #include "core/run/outcomes.hpp"
-#include "core/run/rescale.hpp"
-#include "core/run/staging.hpp"
+#include "core/run/verb_work.hpp"
 
 namespace holonomic {
 
 namespace {
 
-struct MetricWork final : Work {
-    const Variants<MetricCall> calls;
-    const Kernels &k = kernels();
+struct MetricWork final : VerbWork<MetricCall, &MoleculeKernels::metric, &Kernels::metric, &Kernels::long_metric> {
     const std::int64_t extended_bytes;  // that others do without
     MetricWork(const MetricCall &call, Staging &staging, std::int64_t bytes)
-        : calls(
+        : VerbWork(
               call, staging, [](MetricCall &) {},
               [&](MetricCall &c) {
                   c.r = staging.atoms(call.r);
@@ -31,53 +27,7 @@ struct MetricWork final : Work {
               }),
           extended_bytes(bytes) {}
     std::int64_t scratch_bytes() const override { return extended_bytes; }
-    void unit(const Unit &unit, int where, double *scratch, Tally &tally) const override {
-        kernels(unit).metric(calls[where], unit, scratch, tally);
-    }
-    void unit(const MoleculeUnit &unit, int where, double *scratch, Tally &tally) const override {
-        k.molecules.metric(calls[where], unit, scratch, tally);
-    }
-    bool rescales() const override { return true; }
-    bool again(const Unit &one, int where, double *scratch, Tally &tally) const override {
-        return in_ordinary_units(calls[where], one, tally, [&](const MetricCall &c, const Unit &unit, Tally &own) {
-            kernels(unit).metric(c, unit, scratch, own);
-        });
-    }
-    bool again(const MoleculeUnit &one, int where, double *scratch, Tally &tally) const override {
-        return in_ordinary_units(calls[where], one, tally,
-                                 [&](const MetricCall &c, const MoleculeUnit &unit, Tally &own) {
-                                     k.molecules.metric(c, unit, scratch, own);
-                                 });
-    }
-    bool again(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const override {
-        const auto run = [&](const MetricCall &c, const Unit &unit, Tally &own) {
-            solve_long_chain(k.long_metric, kernels_for_one_chain().metric, c, unit.lanes[0], team, store, own);
-        };
-        return in_ordinary_units(calls[where], Unit{&lane, 1, false, false}, tally, run);
-    }
-    // ln det Z is of the caller's units: Z is of lengths squared over masses.
-    template <class AnyUnit, class Run>
-    static bool in_ordinary_units(const MetricCall &call, const AnyUnit &one, Tally &tally, const Run &run) {
-        const KernelMolecule molecule = one_of(one);
-        double log_det = 0, log_det_z = 0;
-        const bool good = work_in_ordinary_units(call, one, tally, [&](MetricCall c, const AnyUnit &unit, Tally &own) {
-            c.log_det = &log_det;
-            c.log_det_z = &log_det_z;
-            run(c, unit, own);
-        });
-        Powers units;
-        if (!good || !find_units(molecule, call, units)) return false;
-        const double per_bond = 0.693147180559945309417 * (2 * units.length - units.mass);
-        if (call.log_det) call.log_det[molecule.number] = log_det;
-        if (call.log_det_z)
-            call.log_det_z[molecule.number] = log_det_z + static_cast<double>(molecule.n_bonds) * per_bond;
-        return true;
-    }
-    std::int64_t long_blocks(std::int64_t n) const override { return k.long_metric.blocks(n); }
-    std::int64_t long_bytes(std::int64_t n) const override { return store_bytes(k.long_metric, n); }
-    void long_chain(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const override {
-        solve_long_chain(k.long_metric, kernels_for_one_chain().metric, calls[where], lane, team, store, tally);
-    }
+    bool walks_batches() const override { return false; }
 };
 
 // What the metric of a molecule takes of scratch memory beside other calls: a network needs the factor that these do

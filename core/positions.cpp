@@ -11,63 +11,25 @@
 #include "core/rigid/parts.hpp"
 #include "core/rigid/verbs.hpp"
 #include "core/run/diagnose.hpp"
-#include "core/run/execute.hpp"
 #include "core/run/outcomes.hpp"
-#include "core/run/rescale.hpp"
-#include "core/run/staging.hpp"
 #include "core/run/thread_memory.hpp"
+#include "core/run/verb_work.hpp"
 
 namespace holonomic {
 
 namespace {
 
-struct PositionsWork final : Work {
-    const Variants<PositionsCall> calls;
-    const Kernels &k = kernels();
+struct PositionsWork final
+    : VerbWork<PositionsCall, &MoleculeKernels::positions, &Kernels::positions, &Kernels::long_positions> {
     PositionsWork(const PositionsCall &call, Staging &staging, const Reference *reference)
-        : calls(
+        : VerbWork(
               call, staging, [&](PositionsCall &c) { c.lambda = staging.results(call.lambda); },
               [&](PositionsCall &c) {
                   c.r_ref = reference ? reference->staged() : staging.atoms(call.r_ref);
                   c.r = staging.moved_atoms(call.r);
                   c.v = staging.moved_atoms(call.v);
               }) {}
-    void unit(const Unit &unit, int where, double *scratch, Tally &tally) const override {
-        kernels(unit).positions(calls[where], unit, scratch, tally);
-    }
-    void unit(const MoleculeUnit &unit, int where, double *scratch, Tally &tally) const override {
-        k.molecules.positions(calls[where], unit, scratch, tally);
-    }
     bool shares_paths() const override { return true; }
-    bool walks_batches() const override { return true; }
-    std::int64_t long_blocks(std::int64_t n) const override { return k.long_positions.blocks(n); }
-    std::int64_t long_bytes(std::int64_t n) const override { return store_bytes(k.long_positions, n); }
-    void long_chain(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const override {
-        work_on_long(calls[where], lane, team, store, tally);
-    }
-    void work_on_long(const PositionsCall &call, const Lane &lane, const Team &team, double *store,
-                      Tally &tally) const {
-        solve_long_chain(k.long_positions, kernels_for_one_chain().positions, call, lane, team, store, tally);
-    }
-    bool rescales() const override { return true; }
-    bool again(const Unit &one, int where, double *scratch, Tally &tally) const override {
-        return work_in_ordinary_units(calls[where], one, tally,
-                                      [&](const PositionsCall &c, const Unit &unit, Tally &own) {
-                                          kernels(unit).positions(c, unit, scratch, own);
-                                      });
-    }
-    bool again(const MoleculeUnit &one, int where, double *scratch, Tally &tally) const override {
-        return work_in_ordinary_units(calls[where], one, tally,
-                                      [&](const PositionsCall &c, const MoleculeUnit &unit, Tally &own) {
-                                          k.molecules.positions(c, unit, scratch, own);
-                                      });
-    }
-    bool again(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const override {
-        return work_in_ordinary_units(calls[where], Unit{&lane, 1, false, false}, tally,
-                                      [&](const PositionsCall &c, const Unit &unit, Tally &own) {
-                                          work_on_long(c, unit.lanes[0], team, store, own);
-                                      });
-    }
 };
 
 // Whether parts of a molecule are moved while others still read the reference: long chains in windows, paths.

@@ -8,21 +8,17 @@
 #include "core/rigid/parts.hpp"
 #include "core/rigid/verbs.hpp"
 #include "core/run/diagnose.hpp"
-#include "core/run/execute.hpp"
 #include "core/run/outcomes.hpp"
-#include "core/run/rescale.hpp"
-#include "core/run/staging.hpp"
 #include "core/run/thread_memory.hpp"
+#include "core/run/verb_work.hpp"
 
 namespace holonomic {
 
 namespace {
 
-struct SolveWork final : Work {
-    const Variants<SolveCall> calls;
-    const Kernels &k = kernels();
+struct SolveWork final : MoleculeWork<SolveCall, &MoleculeKernels::solve> {
     SolveWork(const SolveCall &call, Staging &staging)
-        : calls(
+        : MoleculeWork(
               call, staging,
               [&](SolveCall &c) {
                   c.rhs = staging.inputs(call.rhs);
@@ -33,19 +29,9 @@ struct SolveWork final : Work {
                   c.r = staging.atoms(call.r);
                   c.g = staging.summed_atoms(call.g, call.add);
               }) {}
-    void unit(const MoleculeUnit &unit, int where, double *scratch, Tally &tally) const override {
-        k.molecules.solve(calls[where], unit, scratch, tally);
-    }
-    bool rescales() const override { return true; }
-    bool again(const MoleculeUnit &one, int where, double *scratch, Tally &tally) const override {
-        return work_in_ordinary_units(calls[where], one, tally,
-                                      [&](const SolveCall &c, const MoleculeUnit &unit, Tally &own) {
-                                          k.molecules.solve(c, unit, scratch, own);
-                                      });
-    }
     // The plan has no linear chains.
     void unit(const Unit &, int, double *, Tally &) const override {}
-    bool walks_batches() const override { return true; }
+    using MoleculeWork::unit;
     std::int64_t long_blocks(std::int64_t) const override { return 0; }
     std::int64_t long_bytes(std::int64_t) const override { return 0; }
     void long_chain(const Lane &, int, const Team &, double *, Tally &) const override {}

@@ -7,67 +7,33 @@
 #include "core/rigid/parts.hpp"
 #include "core/rigid/verbs.hpp"
 #include "core/run/diagnose.hpp"
-#include "core/run/execute.hpp"
 #include "core/run/outcomes.hpp"
-#include "core/run/rescale.hpp"
-#include "core/run/staging.hpp"
+#include "core/run/verb_work.hpp"
 
 namespace holonomic {
 
 namespace {
 
-struct VelocitiesWork final : Work {
-    const Variants<VelocitiesCall> calls;
-    const Kernels &k = kernels();
+struct VelocitiesWork final
+    : VerbWork<VelocitiesCall, &MoleculeKernels::velocities, &Kernels::velocities, &Kernels::long_velocities> {
     VelocitiesWork(const VelocitiesCall &call, Staging &staging)
-        : calls(
+        : VerbWork(
               call, staging, [&](VelocitiesCall &c) { c.lambda = staging.results(call.lambda); },
               [&](VelocitiesCall &c) {
                   c.r = staging.atoms(call.r);
                   c.v = staging.moved_atoms(call.v);
               }) {}
-    void unit(const Unit &unit, int where, double *scratch, Tally &tally) const override {
-        kernels(unit).velocities(calls[where], unit, scratch, tally);
-    }
-    void unit(const MoleculeUnit &unit, int where, double *scratch, Tally &tally) const override {
-        k.molecules.velocities(calls[where], unit, scratch, tally);
-    }
-    bool walks_batches() const override { return true; }
-    std::int64_t long_blocks(std::int64_t n) const override { return k.long_velocities.blocks(n); }
-    std::int64_t long_bytes(std::int64_t n) const override { return k.long_velocities.bytes(n); }
-    void long_chain(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const override {
-        work_on_long(calls[where], lane, team, store, tally);
-    }
-    void work_on_long(const VelocitiesCall &call, const Lane &lane, const Team &team, double *store,
-                      Tally &tally) const {
-        // The recursion gives the multipliers to a few roundings of themselves; what that leaves of the rates goes with
-        // a second projection, of velocities that need next to none.
+    // The recursion gives the multipliers to a few roundings of themselves; what that leaves of the rates goes with a
+    // second projection, of velocities that need next to none.
+    [[gnu::noinline]] void solve_long(const VelocitiesCall &call, const Lane &lane, const Team &team, double *store,
+                                      Tally &tally) const override {
         const std::int64_t n_bad = tally.n_bad;
-        solve_long_chain(k.long_velocities, call, lane, team, store, tally);
-        if (tally.n_bad > n_bad) return;
+        VerbWork::solve_long(call, lane, team, store, tally);
+        if (tally.n_bad > n_bad || call.v.is_float) return;
         VelocitiesCall again = call;
         again.lambda = nullptr;
         again.virial = false;
-        if (!call.v.is_float) solve_long_chain(k.long_velocities, again, lane, team, store, tally);
-    }
-    bool rescales() const override { return true; }
-    bool again(const Unit &one, int where, double *scratch, Tally &tally) const override {
-        return work_in_ordinary_units(calls[where], one, tally,
-                                      [&](const VelocitiesCall &c, const Unit &unit, Tally &own) {
-                                          kernels(unit).velocities(c, unit, scratch, own);
-                                      });
-    }
-    bool again(const MoleculeUnit &one, int where, double *scratch, Tally &tally) const override {
-        return work_in_ordinary_units(calls[where], one, tally,
-                                      [&](const VelocitiesCall &c, const MoleculeUnit &unit, Tally &own) {
-                                          k.molecules.velocities(c, unit, scratch, own);
-                                      });
-    }
-    bool again(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const override {
-        return work_in_ordinary_units(calls[where], Unit{&lane, 1, false, false}, tally,
-                                      [&](const VelocitiesCall &c, const Unit &unit, Tally &own) {
-                                          work_on_long(c, unit.lanes[0], team, store, own);
-                                      });
+        VerbWork::solve_long(again, lane, team, store, tally);
     }
 };
 

@@ -110,9 +110,9 @@ inline Tally execute(const Chains &chains, const AnyWork &work) {
 
 // A long chain at the levels of forces and velocities: eliminate, join, finish; once more with compensated products
 // where plain ones don't do.
-template <class Phases, class Call>
-void solve_long_chain(const Phases &phases, const Call &call, const Lane &lane, const Team &team, double *store,
-                      Tally &tally) {
+template <class Call>
+void solve_long_chain(const InSegments<Call> &phases, void (*)(const Call &, const Unit &, double *, Tally &),
+                      const Call &call, const Lane &lane, const Team &team, double *store, Tally &tally) {
     const std::int64_t blocks = phases.blocks(lane.n_bonds);
     JoinResult result = join_flagged;
     for (int attempt = 0; attempt < 2 && result == join_flagged; ++attempt) {
@@ -144,6 +144,10 @@ void solve_long_chain(const InWindows<Call> &windows,
                       const Lane &lane, const Team &team, double *store, Tally &tally) {
     if (!windows.solve(call, lane, team.lent(), store, tally))
         in_one_lane(call, Unit{&lane, 1, false, false}, store, tally);
+}
+template <class Call>
+std::int64_t store_bytes(const InSegments<Call> &phases, std::int64_t n_bonds) {
+    return phases.bytes(n_bonds);
 }
 template <class Call>
 std::int64_t store_bytes(const InWindows<Call> &windows, std::int64_t n_bonds) {

@@ -307,8 +307,18 @@ MetricCall rescaled(const MetricCall &call, Rescaled &copy) {
     MetricCall c = call;
     c.r = copy.inputs(call.r, length);
     c.force = copy.results(call.force, -length, call.add);
+    c.log_det = &copy.log_det;
+    c.log_det_z = &copy.log_det_z;
     c.box = rescaled(call.box, length);
     return c;
+}
+
+// ln det Z is of the caller's units: Z is of lengths squared over masses.
+void put_determinants(const MetricCall &call, const KernelMolecule &molecule, const Rescaled &copy) {
+    const double per_bond = 0.693147180559945309417 * (2 * copy.units.length - copy.units.mass);
+    if (call.log_det) call.log_det[molecule.number] = copy.log_det;
+    if (call.log_det_z)
+        call.log_det_z[molecule.number] = copy.log_det_z + static_cast<double>(molecule.n_bonds) * per_bond;
 }
 
 void add_rescaled(const KernelMolecule &molecule, const Powers &units, Tally own, Tally &tally) {

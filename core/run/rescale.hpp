@@ -52,6 +52,7 @@ public:
     bool put_back() const;
 
     const Powers units;
+    double log_det = 0, log_det_z = 0;  // of the metric: sums, which no power of two multiplies
 
 private:
     struct Atoms {
@@ -87,7 +88,7 @@ ForcesCall rescaled(const ForcesCall &call, Rescaled &copy);
 VelocitiesCall rescaled(const VelocitiesCall &call, Rescaled &copy);
 SolveCall rescaled(const SolveCall &call, Rescaled &copy);
 PositionsCall rescaled(const PositionsCall &call, Rescaled &copy);
-MetricCall rescaled(const MetricCall &call, Rescaled &copy);  // but for the determinants
+MetricCall rescaled(const MetricCall &call, Rescaled &copy);
 bool find_units(const KernelMolecule &molecule, const ForcesCall &call, Powers &units);
 bool find_units(const KernelMolecule &molecule, const VelocitiesCall &call, Powers &units);
 bool find_units(const KernelMolecule &molecule, const SolveCall &call, Powers &units);
@@ -106,6 +107,11 @@ bool may_help(const Call &, const Powers &) {
     return true;
 }
 inline bool may_help(const PositionsCall &, const Powers &units) { return !are_ordinary(units); }
+
+// Writes the determinants of a copy, if the verb has any.
+template <class Call>
+void put_determinants(const Call &, const KernelMolecule &, const Rescaled &) {}
+void put_determinants(const MetricCall &call, const KernelMolecule &molecule, const Rescaled &copy);
 
 // Adds what a copy gives to the sums of its molecule.
 void add_rescaled(const KernelMolecule &molecule, const Powers &units, Tally own, Tally &tally);
@@ -135,6 +141,7 @@ bool work_in_ordinary_units(const Call &call, const AnyUnit &unit, Tally &tally,
     Tally own = empty_tally();
     run(of_copy, unit_of(copy, unit, &lane), own);
     if (own.n_bad > 0 || !copy.put_back()) return false;
+    put_determinants(call, one, copy);
     add_rescaled(one, units, own, tally);
     return true;
 }
