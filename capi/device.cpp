@@ -33,7 +33,7 @@ Bytes bytes_of(const std::vector<Element> &array) {
     return {array.data(), static_cast<std::int64_t>(array.size() * sizeof(Element))};
 }
 
-Bytes array_of(const holonomic::device::KernelPlan &plan, hol_device_array which) {
+Bytes bytes_of(const holonomic::device::KernelPlan &plan, hol_device_array which) {
     switch (which) {
         case HOL_DEVICE_INTEGERS:
             return bytes_of(plan.integers);
@@ -52,8 +52,7 @@ Bytes array_of(const holonomic::device::KernelPlan &plan, hol_device_array which
 int hol_device_plan_create(const hol_chains *chains, hol_device_precision precision, int64_t max_entries,
                            hol_device_plan **plan) {
     if (plan) *plan = nullptr;
-    return guarded(__func__, [&] {
-        need(chains, "chains");
+    return guarded(__func__, chains, [&] {
         need(plan, "plan");
         if (precision != HOL_DEVICE_SINGLE && precision != HOL_DEVICE_MIXED && precision != HOL_DEVICE_DOUBLE)
             throw make_error(Status::value,
@@ -73,7 +72,7 @@ int hol_device_plan_array(const hol_device_plan *plan, hol_device_array which, c
         need(plan, "plan");
         need(data, "data");
         need(bytes, "bytes");
-        const Bytes array = array_of(plan->plan, which);
+        const Bytes array = bytes_of(plan->plan, which);
         *data = array.data;
         *bytes = array.size;
     });

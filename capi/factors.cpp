@@ -7,15 +7,13 @@
 #include "view.hpp"
 
 using holonomic::adds;
-using holonomic::AtomArray;
+using holonomic::array_of;
 using holonomic::FactorsSolve;
 using holonomic::guarded;
 using holonomic::make_error;
 using holonomic::need;
-using holonomic::packed_array;
 using holonomic::sides_at_once;
 using holonomic::Status;
-using holonomic::viewed_array;
 
 struct hol_factors {
     holonomic::Factors factors;
@@ -48,6 +46,29 @@ void solve(const hol_factors *factors, std::int64_t n_rhs, const double *rhs, do
     }
 }
 
+// Of packed doubles, or of views.
+template <class In>
+void update(hol_factors *factors, const In *r) {
+    need(factors, "factors");
+    need(factors->n_atoms(), r, "r");
+    factors->factors.update(array_of(factors->n_atoms(), r, "r"));
+}
+
+template <class In, class Out>
+void forces(const hol_factors *factors, const In *v, const In *f, double *lambda, double *tension, Out *g,
+            hol_mode mode, double *virial) {
+    need(factors, "factors");
+    FactorsSolve what;
+    what.v = array_of(factors->n_atoms(), v, "v");
+    what.f = array_of(factors->n_atoms(), f, "f");
+    what.g = array_of(factors->n_atoms(), g, "g");
+    holonomic::check_dimensions_of<In>({&what.v, &what.f, &what.g});
+    what.lambda = lambda;
+    what.tension = tension;
+    what.add = adds(mode);
+    factors->factors.forces(what, virial);
+}
+
 }  // namespace
 
 int hol_factors_create(const hol_chains *chains, hol_factors **factors) {
@@ -62,51 +83,21 @@ int hol_factors_create(const hol_chains *chains, hol_factors **factors) {
 void hol_factors_destroy(hol_factors *factors) { delete factors; }
 
 int hol_factors_update(hol_factors *factors, const double *r) {
-    return guarded(__func__, [&] {
-        need(factors, "factors");
-        need(factors->n_atoms(), r, "r");
-        factors->factors.update(packed_array(r));
-    });
+    return guarded(__func__, [&] { update(factors, r); });
 }
 
 int hol_factors_update_view(hol_factors *factors, const hol_const_view *r) {
-    return guarded(__func__, [&] {
-        need(factors, "factors");
-        need(factors->n_atoms(), r, "r");
-        factors->factors.update(viewed_array(factors->n_atoms(), r, "r"));
-    });
+    return guarded(__func__, [&] { update(factors, r); });
 }
 
 int hol_factors_forces(const hol_factors *factors, const double *v, const double *f, double *lambda, double *tension,
                        double *g, hol_mode mode, double *virial) {
-    return guarded(__func__, [&] {
-        need(factors, "factors");
-        FactorsSolve what;
-        what.v = packed_array(v);
-        what.f = packed_array(f);
-        what.g = packed_array(g);
-        what.lambda = lambda;
-        what.tension = tension;
-        what.add = adds(mode);
-        factors->factors.forces(what, virial);
-    });
+    return guarded(__func__, [&] { forces(factors, v, f, lambda, tension, g, mode, virial); });
 }
 
 int hol_factors_forces_view(const hol_factors *factors, const hol_const_view *v, const hol_const_view *f,
                             double *lambda, double *tension, const hol_view *g, hol_mode mode, double *virial) {
-    return guarded(__func__, [&] {
-        need(factors, "factors");
-        FactorsSolve what;
-        what.v = viewed_array(factors->n_atoms(), v, "v");
-        what.f = viewed_array(factors->n_atoms(), f, "f");
-        what.g = viewed_array(factors->n_atoms(), g, "g");
-        const AtomArray *const all[] = {&what.v, &what.f, &what.g};
-        holonomic::check_dimensions(all, 3);
-        what.lambda = lambda;
-        what.tension = tension;
-        what.add = adds(mode);
-        factors->factors.forces(what, virial);
-    });
+    return guarded(__func__, [&] { forces(factors, v, f, lambda, tension, g, mode, virial); });
 }
 
 int hol_factors_solve(const hol_factors *factors, int64_t n_rhs, const double *rhs, double *lambda, double *g,
@@ -115,8 +106,8 @@ int hol_factors_solve(const hol_factors *factors, int64_t n_rhs, const double *r
         need(factors, "factors");
         const std::int64_t numbers = 3 * factors->n_atoms();
         solve(
-            factors, n_rhs, rhs, lambda, [&](std::int64_t k) { return packed_array(g ? g + k * numbers : nullptr); },
-            adds(mode), virial);
+            factors, n_rhs, rhs, lambda,
+            [&](std::int64_t k) { return array_of(0, g ? g + k * numbers : nullptr, "g"); }, adds(mode), virial);
     });
 }
 
@@ -124,10 +115,9 @@ int hol_factors_solve_view(const hol_factors *factors, int64_t n_rhs, const doub
                            const hol_view *g, hol_mode mode, double *virial) {
     return guarded(__func__, [&] {
         need(factors, "factors");
-        for (std::int64_t k = 0; g && k < n_rhs; ++k) viewed_array(factors->n_atoms(), g + k, "g");
+        for (std::int64_t k = 0; g && k < n_rhs; ++k) array_of(factors->n_atoms(), g + k, "g");
         solve(
             factors, n_rhs, rhs, lambda,
-            [&](std::int64_t k) { return viewed_array(factors->n_atoms(), g ? g + k : nullptr, "g"); }, adds(mode),
-            virial);
+            [&](std::int64_t k) { return array_of(factors->n_atoms(), g ? g + k : nullptr, "g"); }, adds(mode), virial);
     });
 }

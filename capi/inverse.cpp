@@ -8,13 +8,12 @@
 #include "boundary.hpp"
 #include "view.hpp"
 
+using holonomic::array_of;
 using holonomic::AtomArray;
 using holonomic::guarded;
 using holonomic::make_error;
 using holonomic::need;
-using holonomic::packed_array;
 using holonomic::Status;
-using holonomic::viewed_array;
 
 struct hol_inverse {
     std::unique_ptr<const holonomic::Inverse> inverse;
@@ -22,7 +21,12 @@ struct hol_inverse {
 
 namespace {
 
-void create(const hol_chains *chains, std::int64_t molecule, const AtomArray &r, hol_inverse **inverse) {
+// Of packed doubles, or of a view.
+template <class In>
+void create(const hol_chains *chains, std::int64_t molecule, const In *r, hol_inverse **inverse) {
+    need(chains, "chains");
+    need(r, "r");
+    need(inverse, "inverse");
     const holonomic::Chains &all = chains->chains;
     if (molecule - all.base >= all.n_chains() && molecule - all.base < all.n_molecules() && molecule >= all.base)
         throw make_error(Status::unsupported,
@@ -35,7 +39,7 @@ void create(const hol_chains *chains, std::int64_t molecule, const AtomArray &r,
         error.base = all.base;
         throw error;
     }
-    *inverse = new hol_inverse{holonomic::Inverse::make(all, molecule - all.base, r)};
+    *inverse = new hol_inverse{holonomic::Inverse::make(all, molecule - all.base, array_of(all.n_atoms(), r, "r"))};
 }
 
 // Number of a bond counted from 0; -1, which the core refuses, for one below the base.
@@ -51,9 +55,14 @@ bool is_physical(hol_scaling scaling) {
     return scaling == HOL_PHYSICAL;
 }
 
-void error_bound(const hol_inverse *inverse, const AtomArray &v, const AtomArray &f, const double *lambda,
-                 double *bound, double *relative) {
-    const std::vector<double> found = inverse->inverse->error_bound(v, f, lambda);
+template <class In>
+void error_bound(const hol_inverse *inverse, const In *v, const In *f, const double *lambda, double *bound,
+                 double *relative) {
+    need(inverse, "inverse");
+    need(lambda, "lambda");
+    const AtomArray av = array_of(1, v, "v"), af = array_of(1, f, "f");
+    holonomic::check_dimensions_of<In>({&av, &af});
+    const std::vector<double> found = inverse->inverse->error_bound(av, af, lambda);
     double largest = 0, size = 0;
     for (std::size_t k = 0; k < found.size(); ++k) {
         largest = std::max(largest, found[k]);
@@ -71,23 +80,13 @@ void error_bound(const hol_inverse *inverse, const AtomArray &v, const AtomArray
 
 int hol_inverse_create(const hol_chains *chains, int64_t molecule, const double *r, hol_inverse **inverse) {
     if (inverse) *inverse = nullptr;
-    return guarded(__func__, [&] {
-        need(chains, "chains");
-        need(r, "r");
-        need(inverse, "inverse");
-        create(chains, molecule, packed_array(r), inverse);
-    });
+    return guarded(__func__, [&] { create(chains, molecule, r, inverse); });
 }
 
 int hol_inverse_create_view(const hol_chains *chains, int64_t molecule, const hol_const_view *r,
                             hol_inverse **inverse) {
     if (inverse) *inverse = nullptr;
-    return guarded(__func__, [&] {
-        need(chains, "chains");
-        need(r, "r");
-        need(inverse, "inverse");
-        create(chains, molecule, viewed_array(chains->n_atoms(), r, "r"), inverse);
-    });
+    return guarded(__func__, [&] { create(chains, molecule, r, inverse); });
 }
 
 void hol_inverse_destroy(hol_inverse *inverse) { delete inverse; }
@@ -136,21 +135,10 @@ int hol_inverse_condition(const hol_inverse *inverse, double *condition) {
 
 int hol_inverse_error_bound(const hol_inverse *inverse, const double *v, const double *f, const double *lambda,
                             double *bound, double *relative) {
-    return guarded(__func__, [&] {
-        need(inverse, "inverse");
-        need(lambda, "lambda");
-        error_bound(inverse, packed_array(v), packed_array(f), lambda, bound, relative);
-    });
+    return guarded(__func__, [&] { error_bound(inverse, v, f, lambda, bound, relative); });
 }
 
 int hol_inverse_error_bound_view(const hol_inverse *inverse, const hol_const_view *v, const hol_const_view *f,
                                  const double *lambda, double *bound, double *relative) {
-    return guarded(__func__, [&] {
-        need(inverse, "inverse");
-        need(lambda, "lambda");
-        const AtomArray av = viewed_array(1, v, "v"), af = viewed_array(1, f, "f");
-        const AtomArray *const all[] = {&av, &af};
-        holonomic::check_dimensions(all, 2);
-        error_bound(inverse, av, af, lambda, bound, relative);
-    });
+    return guarded(__func__, [&] { error_bound(inverse, v, f, lambda, bound, relative); });
 }

@@ -4,46 +4,38 @@
 #include "mode.hpp"
 #include "view.hpp"
 
-using holonomic::adds;
-using holonomic::AtomArray;
+using holonomic::array_of;
 using holonomic::guarded;
-using holonomic::MetricCall;
 using holonomic::need;
-using holonomic::packed_array;
-using holonomic::viewed_array;
+
+namespace {
+
+// Of packed doubles, or of views.
+template <class In, class Out>
+void run(const hol_chains *chains, const In *r, double kT, double *log_det, double *log_det_z, double *energy,
+         Out *force, hol_mode mode) {
+    need(chains, "chains");
+    need(chains->n_atoms(), r, "r");
+    holonomic::MetricCall call;
+    call.r = array_of(chains->n_atoms(), r, "r");
+    call.force = array_of(chains->n_atoms(), force, "force");
+    holonomic::check_dimensions_of<In>({&call.r, &call.force});
+    holonomic::need_apart(*chains, call.force, "force", call.r, "r");
+    call.kT = kT;
+    call.log_det = log_det;
+    call.log_det_z = log_det_z;
+    call.add = holonomic::adds(mode);
+    holonomic::metric(chains->chains, call, energy);
+}
+
+}  // namespace
 
 int hol_metric(const hol_chains *chains, const double *r, double kT, double *log_det, double *log_det_z, double *energy,
                double *force, hol_mode mode) {
-    return guarded(__func__, [&] {
-        need(chains, "chains");
-        need(chains->n_atoms(), r, "r");
-        MetricCall call;
-        call.r = packed_array(r);
-        call.force = packed_array(force);
-        holonomic::need_apart(*chains, call.force, "force", call.r, "r");
-        call.kT = kT;
-        call.log_det = log_det;
-        call.log_det_z = log_det_z;
-        call.add = adds(mode);
-        holonomic::metric(chains->chains, call, energy);
-    });
+    return guarded(__func__, [&] { run(chains, r, kT, log_det, log_det_z, energy, force, mode); });
 }
 
 int hol_metric_view(const hol_chains *chains, const hol_const_view *r, double kT, double *log_det, double *log_det_z,
                     double *energy, const hol_view *force, hol_mode mode) {
-    return guarded(__func__, [&] {
-        need(chains, "chains");
-        need(chains->n_atoms(), r, "r");
-        MetricCall call;
-        call.r = viewed_array(chains->n_atoms(), r, "r");
-        call.force = viewed_array(chains->n_atoms(), force, "force");
-        const AtomArray *const all[] = {&call.r, &call.force};
-        holonomic::check_dimensions(all, 2);
-        holonomic::need_apart(*chains, call.force, "force", call.r, "r");
-        call.kT = kT;
-        call.log_det = log_det;
-        call.log_det_z = log_det_z;
-        call.add = adds(mode);
-        holonomic::metric(chains->chains, call, energy);
-    });
+    return guarded(__func__, [&] { run(chains, r, kT, log_det, log_det_z, energy, force, mode); });
 }

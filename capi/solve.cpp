@@ -4,35 +4,34 @@
 #include "mode.hpp"
 #include "view.hpp"
 
-using holonomic::adds;
+using holonomic::array_of;
 using holonomic::AtomArray;
 using holonomic::guarded;
 using holonomic::need;
-using holonomic::packed_array;
-using holonomic::viewed_array;
+
+namespace {
+
+// Of packed doubles, or of views.
+template <class In, class Out>
+void run(const hol_chains *chains, const In *r, const double *rhs, double *lambda, Out *g, hol_mode mode,
+         double *virial) {
+    need(chains, "chains");
+    need(chains->n_atoms(), r, "r");
+    need(chains->n_bonds(), rhs, "rhs");
+    const AtomArray ar = array_of(chains->n_atoms(), r, "r"), ag = array_of(chains->n_atoms(), g, "g");
+    holonomic::check_dimensions_of<In>({&ar, &ag});
+    holonomic::need_apart(*chains, ag, "g", ar, "r");
+    holonomic::solve(chains->chains, ar, rhs, lambda, ag, holonomic::adds(mode), virial);
+}
+
+}  // namespace
 
 int hol_solve(const hol_chains *chains, const double *r, const double *rhs, double *lambda, double *g, hol_mode mode,
               double *virial) {
-    return guarded(__func__, [&] {
-        need(chains, "chains");
-        need(chains->n_atoms(), r, "r");
-        need(chains->n_bonds(), rhs, "rhs");
-        const AtomArray ar = packed_array(r), ag = packed_array(g);
-        holonomic::need_apart(*chains, ag, "g", ar, "r");
-        holonomic::solve(chains->chains, ar, rhs, lambda, ag, adds(mode), virial);
-    });
+    return guarded(__func__, [&] { run(chains, r, rhs, lambda, g, mode, virial); });
 }
 
 int hol_solve_view(const hol_chains *chains, const hol_const_view *r, const double *rhs, double *lambda,
                    const hol_view *g, hol_mode mode, double *virial) {
-    return guarded(__func__, [&] {
-        need(chains, "chains");
-        need(chains->n_atoms(), r, "r");
-        need(chains->n_bonds(), rhs, "rhs");
-        const AtomArray ar = viewed_array(chains->n_atoms(), r, "r"), ag = viewed_array(chains->n_atoms(), g, "g");
-        const AtomArray *const all[] = {&ar, &ag};
-        holonomic::check_dimensions(all, 2);
-        holonomic::need_apart(*chains, ag, "g", ar, "r");
-        holonomic::solve(chains->chains, ar, rhs, lambda, ag, adds(mode), virial);
-    });
+    return guarded(__func__, [&] { run(chains, r, rhs, lambda, g, mode, virial); });
 }

@@ -26,12 +26,12 @@ void refuse_same(const char *name, const char *other) {
     throw make_error(Status::value, "%s is the array that was given for %s", name, other);
 }
 
-void check_dimensions(const AtomArray *const *arrays, int n) {
+void check_dimensions(std::initializer_list<const AtomArray *> arrays) {
     const AtomArray *first = nullptr;
-    for (int i = 0; i < n; ++i) {
-        if (!arrays[i]->x) continue;
-        if (!first) first = arrays[i];
-        if (!arrays[i]->z != !first->z) throw make_error(Status::value, "some views have z and some have not");
+    for (const AtomArray *const array : arrays) {
+        if (!array->x) continue;
+        if (!first) first = array;
+        if (!array->z != !first->z) throw make_error(Status::value, "some views have z and some have not");
     }
 }
 
