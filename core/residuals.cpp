@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "core/caller/box.hpp"
 #include "core/caller/packed_array.hpp"
 #include "core/kernels/tally.hpp"
 #include "core/rigid/parts.hpp"
@@ -14,10 +13,6 @@ namespace holonomic {
 
 namespace {
 
-struct Residual {
-    double length, rate;
-};
-
 Residual residual_of(const Chains &chains, const Molecule &m, std::int64_t k, const AtomArray &r, const AtomArray &v) {
     double from[3], to[3], d[3], from_v[3] = {0, 0, 0}, to_v[3] = {0, 0, 0};
     read_atom(r, m.atom(m.i(k)), from);
@@ -27,14 +22,7 @@ Residual residual_of(const Chains &chains, const Molecule &m, std::int64_t k, co
         read_atom(v, m.atom(m.j(k)), to_v);
     }
     bond_vector(chains.box, from, to, d);
-    const double a = m.length(k);
-    double dd = 0, du = 0;
-    for (int c = 0; c < 3; ++c) {
-        dd += d[c] * d[c];
-        du += d[c] * (to_v[c] - from_v[c]);
-    }
-    if (v.x && chains.box_rate()) du += stretching(*chains.box_rate(), d);
-    return {(dd - a * a) / (a * a), du};
+    return residual_of(d, from_v, to_v, m.length(k), v.x ? chains.box_rate() : nullptr);
 }
 
 void residuals_of_bonds(const Chains &chains, const AtomArray &r, const AtomArray &v, double *length, double *rate) {

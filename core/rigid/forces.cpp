@@ -35,13 +35,14 @@ void write_force(const ForceOutputs &out, std::int64_t atom, const PairVector &f
 void write(const System &system, const MoleculeView &view, const PairVector *z, const AtomArray &f,
            const ForceOutputs &out, bool virial, Tally &tally) {
     const MoleculeKind &s = system.kind();
+    const auto of_constraints = [&](std::int32_t i) {
+        const PairVector whole = s.mass[at(i)] * system.at_atom(z, i);
+        return whole - (f.x ? vector_of_atom(f, view.atoms[i]) : PairVector{});
+    };
     if (s.by_lengths && (out.lambda || out.tension)) {
         double *force = force_within(system);
         for (std::int32_t i = 0; i < s.n_held; ++i) {
-            double x[3] = {0, 0, 0};
-            if (f.x) read_atom(f, view.atoms[i], x);
-            const PairVector applied = {as_pair(x[0]), as_pair(x[1]), as_pair(x[2])};
-            const Vector3<double> whole = rounded(s.mass[at(i)] * system.at_atom(z, i) - applied);
+            const Vector3<double> whole = rounded(of_constraints(i));
             *force++ = whole.x, *force++ = whole.y, *force++ = whole.z;
         }
         share_within(system, system.now);
@@ -57,10 +58,7 @@ void write(const System &system, const MoleculeView &view, const PairVector *z, 
     if (virial && f.x) system.add_virial_of_sites(system.now, f, view, tally.virial);
     if (!out.g.x) return;
     for (std::int32_t i = 0; i < s.n_held; ++i) {
-        double x[3] = {0, 0, 0};
-        if (f.x) read_atom(f, view.atoms[i], x);
-        const PairVector applied = {as_pair(x[0]), as_pair(x[1]), as_pair(x[2])};
-        write_force(out, view.atoms[i], s.mass[at(i)] * system.at_atom(z, i) - applied, out.add);
+        write_force(out, view.atoms[i], of_constraints(i), out.add);
     }
     if (s.n_held == s.n_atoms) return;
     system.pulls(system.now, system.t, system.b);
@@ -82,18 +80,15 @@ struct BodyForces final : BodyWork {
     const Cell &box;
     const BoxRate *rate;
     ForceOutputs out;
-    bool virial, in_order;
+    bool virial;
     ForcesCall call;
 
     BodyForces(const Chains &chains, const AtomArray &r_, const AtomArray &v_, const AtomArray &f_,
                const ForceOutputs &out_, bool virial_)
-        : r(r_), v(v_), f(f_), box(chains.box), rate(chains.box_rate()), out(out_), virial(virial_),
-          in_order(out_.g.x && !chains.bodies()->fixed_atoms().empty()), call{r_,       v_,      f_,
-                                                                              out_.g,   nullptr, nullptr,
-                                                                              out_.add, virial_, {}} {
+        : BodyWork(chains, out_.g), r(r_), v(v_), f(f_), box(chains.box), rate(chains.box_rate()), out(out_),
+          virial(virial_), call{r_, v_, f_, out_.g, nullptr, nullptr, out_.add, virial_, {}} {
         put_box(box, call.box);
     }
-    bool is_in_order() const override { return in_order; }
     bool takes_blocks(bool bonds) const override { return !rate && !(bonds && (out.lambda || out.tension)); }
     std::uint64_t bodies(const BodyUnit &unit, double *scratch, BodyResult *results) const override {
         return kernels().bodies.forces(call, unit, scratch, results);
@@ -133,12 +128,10 @@ struct BodySolve final : BodyWork {
     const Cell &box;
     const double *rhs;
     ForceOutputs out;
-    bool virial, in_order;
+    bool virial;
 
     BodySolve(const Chains &chains, const AtomArray &r_, const double *rhs_, const ForceOutputs &out_, bool virial_)
-        : r(r_), box(chains.box), rhs(rhs_), out(out_), virial(virial_),
-          in_order(out_.g.x && !chains.bodies()->fixed_atoms().empty()) {}
-    bool is_in_order() const override { return in_order; }
+        : BodyWork(chains, out_.g), r(r_), box(chains.box), rhs(rhs_), out(out_), virial(virial_) {}
 
     Outcome molecule(const System &system, const MoleculeView &view, Tally &tally) const override {
         const MoleculeKind &s = system.kind();
@@ -162,23 +155,15 @@ struct BodySolve final : BodyWork {
 
 void forces(const Chains &chains, const AtomArray &r, const AtomArray &v, const AtomArray &f, double *lambda,
             double *tension, const AtomArray &g, bool add, double *virial) {
-    const RunResult found = run(chains, BodyForces(chains, r, v, f, {lambda, tension, g, add}, virial != nullptr));
-    if (found.tally.n_bad > 0) {
-        const Named arrays[] = {{"position", &r}, {"velocity", &v}, {"force", &f}};
-        throw error_of(chains, found, arrays, 3);
-    }
-    if (virial) add_virial(found.tally, virial);
+    run_all(chains, BodyForces(chains, r, v, f, {lambda, tension, g, add}, virial != nullptr),
+            {{"position", &r}, {"velocity", &v}, {"force", &f}}, virial);
 }
 
 void solve(const Chains &chains, const AtomArray &r, const double *rhs, double *lambda, const AtomArray &g, bool add,
            double *virial) {
-    const RunResult found = run(chains, BodySolve(chains, r, rhs, {lambda, nullptr, g, add}, virial != nullptr));
-    if (found.tally.n_bad > 0) {
-        const Named arrays[] = {{"position", &r}};
-        throw error_of_values(chains, found.tally.first_bad - chains.n_chains(), rhs, "right-hand side",
-                              error_of(chains, found, arrays, 1));
-    }
-    if (virial) add_virial(found.tally, virial);
+    const NamedValues given{"right-hand side", rhs};
+    run_all(chains, BodySolve(chains, r, rhs, {lambda, nullptr, g, add}, virial != nullptr), {{"position", &r}}, virial,
+            &given);
 }
 
 }  // namespace holonomic::rigid

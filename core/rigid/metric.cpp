@@ -14,10 +14,8 @@ namespace {
 struct BodyMetric final : BodyWork {
     const Cell &box;
     const MetricCall &call;
-    const bool in_order;
     BodyMetric(const Chains &chains, const MetricCall &call_)
-        : box(chains.box), call(call_), in_order(call_.force.x && !chains.bodies()->fixed_atoms().empty()) {}
-    bool is_in_order() const override { return in_order; }
+        : BodyWork(chains, call_.force), box(chains.box), call(call_) {}
 
     Outcome molecule(const System &system, const MoleculeView &view, Tally &tally) const override {
         const MoleculeKind &s = system.kind();
@@ -96,12 +94,7 @@ void need_metric(const Chains &chains) {
 }
 
 double metric(const Chains &chains, const MetricCall &call) {
-    const RunResult found = run(chains, BodyMetric(chains, call));
-    if (found.tally.n_bad > 0) {
-        const Named arrays[] = {{"position", &call.r}};
-        throw error_of(chains, found, arrays, 1);
-    }
-    return found.tally.log_det;
+    return run_all(chains, BodyMetric(chains, call), {{"position", &call.r}}, nullptr).log_det;
 }
 
 }  // namespace holonomic::rigid

@@ -50,9 +50,7 @@ PairVector System::lifted_force(const Part &part, const AtomArray &f, const Mole
     for (std::int32_t i = 0; i < its.n_atoms; ++i) {
         const DoublePair &z = its.z[static_cast<std::size_t>(i)];
         if (z.hi == 0) continue;
-        double x[3];
-        read_atom(f, view.atoms[part.first_atom + i], x);
-        sum = sum + z * PairVector{as_pair(x[0]), as_pair(x[1]), as_pair(x[2])};
+        sum = sum + z * vector_of_atom(f, view.atoms[part.first_atom + i]);
     }
     return sum;
 }

@@ -16,11 +16,6 @@ namespace {
 // Below this residuals are far beyond the rounding of coordinates, and multipliers have all their digits.
 constexpr double exact = 1e-20;
 
-double size_of(const PairVector &a) {
-    const Vector3<double> v = rounded(a);
-    return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
-}
-
 struct BodyPositions final : BodyWork {
     AtomArray r_ref, r, v;
     const Cell &box_ref, &box;
@@ -32,9 +27,9 @@ struct BodyPositions final : BodyWork {
 
     BodyPositions(const Chains &chains, const AtomArray &r_ref_, const Cell &box_ref_, const AtomArray &r_,
                   const AtomArray &v_, double dt_, double *lambda_, bool virial_, bool report_, bool check_)
-        : r_ref(r_ref_), r(r_), v(v_), box_ref(box_ref_), box(chains.box), rate(chains.box_rate()), dt(dt_),
-          lambda(lambda_), tolerance(chains.tolerance), most_iterations(chains.max_iterations), virial(virial_),
-          report(report_ || chains.keeps_outcomes), check(check_) {
+        : BodyWork(chains), r_ref(r_ref_), r(r_), v(v_), box_ref(box_ref_), box(chains.box), rate(chains.box_rate()),
+          dt(dt_), lambda(lambda_), tolerance(chains.tolerance), most_iterations(chains.max_iterations),
+          virial(virial_), report(report_ || chains.keeps_outcomes), check(check_) {
         call.r_ref = r_ref;
         call.r = r;
         call.v = v;
@@ -196,10 +191,7 @@ Tally run_positions(const Chains &chains, const BodyPositions &work, Report *rep
             report->bond = tally.worst_bond < 0 ? -1 : tally.worst_bond + chains.base;
         }
     }
-    if (tally.n_bad > 0) {
-        const Named arrays[] = {{"reference position", &work.r_ref}, {"position", &work.r}};
-        throw error_of(chains, found, arrays, 2);
-    }
+    throw_if_bad(chains, found, {{"reference position", &work.r_ref}, {"position", &work.r}});
     return tally;
 }
 

@@ -17,12 +17,10 @@ struct BodyReactions final : BodyWork {
     const Cell &box;
     const double *lambda;
     Reactions out;
-    bool in_order;
 
     BodyReactions(const Chains &chains, const AtomArray &r_, const Cell &box_, const double *lambda_,
                   const Reactions &out_)
-        : r(r_), box(box_), lambda(lambda_), out(out_), in_order(out.g.x && !chains.bodies()->fixed_atoms().empty()) {}
-    bool is_in_order() const override { return in_order; }
+        : BodyWork(chains, out_.g), r(r_), box(box_), lambda(lambda_), out(out_) {}
 
     Outcome molecule(const System &system, const MoleculeView &view, Tally &tally) const override {
         const MoleculeKind &s = system.kind();
@@ -65,13 +63,8 @@ struct BodyReactions final : BodyWork {
 
 void reactions(const Chains &chains, const AtomArray &r, const Cell &box, const double *lambda, const Reactions &out,
                double *virial) {
-    const RunResult found = run(chains, BodyReactions(chains, r, box, lambda, out));
-    if (found.tally.n_bad > 0) {
-        const Named arrays[] = {{"position", &r}};
-        throw error_of_values(chains, found.tally.first_bad - chains.n_chains(), lambda, "multiplier",
-                              error_of(chains, found, arrays, 1));
-    }
-    if (virial) add_virial(found.tally, virial);
+    const NamedValues given{"multiplier", lambda};
+    run_all(chains, BodyReactions(chains, r, box, lambda, out), {{"position", &r}}, virial, &given);
 }
 
 }  // namespace holonomic::rigid

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "core/caller/box.hpp"
+#include "core/residuals.hpp"
 #include "core/rigid/run.hpp"
 #include "core/rigid/verbs.hpp"
 
@@ -16,7 +17,7 @@ struct BodyResiduals final : BodyWork {
     double *length, *rate;
 
     BodyResiduals(const Chains &chains, const AtomArray &r_, const AtomArray &v_, double *length_, double *rate_)
-        : r(r_), v(v_), box(chains.box), box_rate(chains.box_rate()), length(length_), rate(rate_) {}
+        : BodyWork(chains), r(r_), v(v_), box(chains.box), box_rate(chains.box_rate()), length(length_), rate(rate_) {}
 
     void place_bond(const MoleculeKind &kind, const MoleculeView &view, std::size_t k, const double (&x)[2][3],
                     double *d) const {
@@ -24,24 +25,16 @@ struct BodyResiduals final : BodyWork {
         const Vector3<double> image = rounded(told_image(box, view, k));
         d[0] = x[1][0] - x[0][0] + image.x, d[1] = x[1][1] - x[0][1] + image.y, d[2] = x[1][2] - x[0][2] + image.z;
     }
-    struct Residual {
-        double length, rate;
-    };
     Residual residual_of(const MoleculeKind &kind, const MoleculeView &view, std::size_t k) const {
         const Bond &bond = kind.bonds[k];
-        double x[2][3], u[2][3] = {}, d[3], dd = 0, du = 0;
+        double x[2][3], u[2][3] = {}, d[3];
         const std::int32_t ends[2] = {bond.i, bond.j};
         for (int end = 0; end < 2; ++end) {
             read_atom(r, view.atoms[ends[end]], x[end]);
             if (v.x) read_atom(v, view.atoms[ends[end]], u[end]);
         }
         place_bond(kind, view, k, x, d);
-        for (int c = 0; c < 3; ++c) {
-            dd += d[c] * d[c];
-            du += d[c] * (u[1][c] - u[0][c]);
-        }
-        if (v.x && box_rate) du += stretching(*box_rate, d);
-        return {(dd - bond.length * bond.length) / (bond.length * bond.length), du};
+        return holonomic::residual_of(d, u[0], u[1], bond.length, v.x ? box_rate : nullptr);
     }
 
     Outcome molecule(const System &system, const MoleculeView &view, Tally &) const override {
@@ -62,10 +55,7 @@ struct BodyResiduals final : BodyWork {
 }  // namespace
 
 void residuals(const Chains &chains, const AtomArray &r, const AtomArray &v, double *length, double *rate) {
-    const RunResult found = run(chains, BodyResiduals(chains, r, v, length, rate));
-    if (found.tally.n_bad == 0) return;
-    const Named arrays[] = {{"position", &r}, {"velocity", &v}};
-    throw error_of(chains, found, arrays, 2);
+    run_all(chains, BodyResiduals(chains, r, v, length, rate), {{"position", &r}, {"velocity", &v}}, nullptr);
 }
 
 }  // namespace holonomic::rigid

@@ -10,6 +10,7 @@
 #include "core/rigid/blocks.hpp"
 #include "core/rigid/parts.hpp"
 #include "core/run/bond_words.hpp"
+#include "core/run/execute.hpp"
 #include "core/run/outcomes.hpp"
 #include "core/run/thread_memory.hpp"
 #include "core/run/threads.hpp"
@@ -194,7 +195,7 @@ RunResult run(const Chains &chains, const BodyWork &work) {
         MoleculeChunk one(chains, work, own, outcomes);
         for (std::int64_t j = 0; j < n_blocks; ++j) parts[j] = one.run(j * chunk_size);
     };
-    if (n_threads <= 1 || work.is_in_order()) {
+    if (n_threads <= 1 || work.is_in_order) {
         run_all();
     } else {
         std::atomic<std::int64_t> next{0};
@@ -210,26 +211,9 @@ RunResult run(const Chains &chains, const BodyWork &work) {
     return total;
 }
 
-Error error_of_values(const Chains &chains, std::int64_t molecule, const double *values, const char *what,
-                      const Error &otherwise) {
-    const MoleculeKind &s = chains.bodies()->kind(molecule);
-    for (std::size_t k = 0; k < s.bonds.size(); ++k) {
-        if (std::isfinite(values[chains.bodies()->bonds(molecule)[k]])) continue;
-        Error error = make_error(Status::not_finite, "molecule %s: the %s of bond %lld is not finite",
-                                 chains.name_of_rigid(otherwise.chain, chains.bodies()->atoms(molecule)[0]).text, what,
-                                 static_cast<long long>(k) + chains.base);
-        error.chain = otherwise.chain;
-        error.bond = static_cast<std::int64_t>(k);
-        error.n_bad = otherwise.n_bad;
-        error.base = otherwise.base;
-        return error;
-    }
-    return otherwise;
-}
-
 namespace {
 
-Error error_of_first(const Chains &chains, const RunResult &found, const Named *arrays, int n_arrays) {
+Error error_of_first(const Chains &chains, const RunResult &found, std::initializer_list<NamedArray> arrays) {
     const Bodies &bodies = *chains.bodies();
     const std::int64_t m = found.tally.first_bad - chains.n_chains();
     const MoleculeKind &kind = bodies.kind(m);
@@ -246,13 +230,13 @@ Error error_of_first(const Chains &chains, const RunResult &found, const Named *
         error.base = chains.base;
         return error;
     };
-    for (int a = 0; a < n_arrays; ++a) {
-        if (!arrays[a].array->x) continue;
+    for (const NamedArray &one : arrays) {
+        if (!one.array->x) continue;
         for (std::int32_t i = 0; i < kind.n_atoms; ++i) {
             double x[3];
-            read_atom(*arrays[a].array, atoms[i], x);
+            read_atom(*one.array, atoms[i], x);
             if (std::isfinite(x[0]) && std::isfinite(x[1]) && std::isfinite(x[2])) continue;
-            return finish(make_error(Status::not_finite, "%s: the %s of atom %s is not finite%s", name, arrays[a].what,
+            return finish(make_error(Status::not_finite, "%s: the %s of atom %s is not finite%s", name, one.what,
                                      chains.name_of_atom(atoms[i]).text, others),
                           atoms[i]);
         }
@@ -283,17 +267,46 @@ Error error_of_first(const Chains &chains, const RunResult &found, const Named *
     }
 }
 
+// That of a value per bond of the first bad molecule that is not finite; else `otherwise`.
+Error error_of_values(const Chains &chains, const NamedValues &given, const Error &otherwise) {
+    const std::int64_t molecule = otherwise.chain - chains.n_chains();
+    const MoleculeKind &s = chains.bodies()->kind(molecule);
+    for (std::size_t k = 0; k < s.bonds.size(); ++k) {
+        if (std::isfinite(given.values[chains.bodies()->bonds(molecule)[k]])) continue;
+        Error error = make_error(Status::not_finite, "molecule %s: the %s of bond %lld is not finite",
+                                 chains.name_of_rigid(otherwise.chain, chains.bodies()->atoms(molecule)[0]).text,
+                                 given.what, static_cast<long long>(k) + chains.base);
+        error.chain = otherwise.chain;
+        error.bond = static_cast<std::int64_t>(k);
+        error.n_bad = otherwise.n_bad;
+        error.base = otherwise.base;
+        return error;
+    }
+    return otherwise;
+}
+
 }  // namespace
 
-Error error_of(const Chains &chains, const RunResult &found, const Named *arrays, int n_arrays) {
+void throw_if_bad(const Chains &chains, const RunResult &found, std::initializer_list<NamedArray> arrays,
+                  const NamedValues *values) {
+    if (found.tally.n_bad == 0) return;
     OutcomeOf *const outcomes = outcomes_under_way();
     for (std::int64_t m = chains.n_chains(); outcomes && m < chains.n_molecules(); ++m) {
         if (outcomes[m].status >= 0) continue;
         RunResult alone{found.tally, why(outcomes[m].status)};
         alone.tally.first_bad = m;
-        outcomes[m].status = static_cast<std::int32_t>(error_of_first(chains, alone, arrays, n_arrays).status);
+        outcomes[m].status = static_cast<std::int32_t>(error_of_first(chains, alone, arrays).status);
     }
-    return error_of_first(chains, found, arrays, n_arrays);
+    const Error error = error_of_first(chains, found, arrays);
+    throw values ? error_of_values(chains, *values, error) : error;
+}
+
+Tally run_all(const Chains &chains, const BodyWork &work, std::initializer_list<NamedArray> arrays, double *virial,
+              const NamedValues *values) {
+    const RunResult found = run(chains, work);
+    throw_if_bad(chains, found, arrays, values);
+    if (virial) add_virial(found.tally, virial);
+    return found.tally;
 }
 
 }  // namespace holonomic::rigid

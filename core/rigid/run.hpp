@@ -1,10 +1,13 @@
 // Goes through the molecules with rigid bodies, on as many threads as the work is worth.
 #pragma once
 
+#include <initializer_list>
+
 #include "core/kernels/tally.hpp"
 #include "core/molecules/chains.hpp"
 #include "core/rigid/bodies.hpp"
 #include "core/rigid/system.hpp"
+#include "core/run/diagnose.hpp"
 
 namespace holonomic::rigid {
 
@@ -17,6 +20,11 @@ struct RunResult {
 // What a verb does with one molecule. Nothing of a molecule that is not good has been written.
 class BodyWork {
 public:
+    // g: forces that it writes, or absent. Fixed atoms are shared, so that molecules add to them one after the other.
+    explicit BodyWork(const Chains &chains, const AtomArray &g = {})
+        : is_in_order(g.x && !chains.bodies()->fixed_atoms().empty()) {}
+    const bool is_in_order;
+
     virtual Outcome molecule(const System &system, const MoleculeView &view, Tally &tally) const = 0;
     // The same for bodies without bonds, side by side: bits of those that are done. The others come one by one.
     // bonds: also those that have some within them, whose values are wanted.
@@ -25,8 +33,6 @@ public:
     // What a body that is done adds to the tally, if anything.
     virtual bool has_results() const { return false; }
     virtual void done(const BodyResult &, std::int64_t number, Tally &) const { static_cast<void>(number); }
-    // Whether molecules add to atoms that they share, fixed ones: one after the other.
-    virtual bool is_in_order() const { return false; }
 
 protected:
     ~BodyWork() = default;
@@ -36,15 +42,19 @@ protected:
 // threads.
 RunResult run(const Chains &chains, const BodyWork &work);
 
-// The error of the first bad molecule, once all others are complete.
-struct Named {
+// Values that a call was given per bond.
+struct NamedValues {
     const char *what;
-    const AtomArray *array;
+    const double *values;
 };
-Error error_of(const Chains &chains, const RunResult &found, const Named *arrays, int n_arrays);
 
-// The same, or that of a value per bond that is not finite, if there is one.
-Error error_of_values(const Chains &chains, std::int64_t molecule, const double *values, const char *what,
-                      const Error &otherwise);
+// Throws the error of the first bad molecule, if there is one, once all others are complete: of arrays per atom or of
+// values per bond that are not finite, or what its outcome says.
+void throw_if_bad(const Chains &chains, const RunResult &found, std::initializer_list<NamedArray> arrays,
+                  const NamedValues *values = nullptr);
+
+// Goes through all, adds to the virial unless it is null, and returns the sums.
+Tally run_all(const Chains &chains, const BodyWork &work, std::initializer_list<NamedArray> arrays, double *virial,
+              const NamedValues *values = nullptr);
 
 }  // namespace holonomic::rigid

@@ -48,50 +48,6 @@ private:
     char *next_;
 };
 
-struct SystemLayout {
-    Conformation now, reference;
-    PairVector *a, *b, *start;
-    DoublePair *t, *c, *residual, *wide_x, *inverse;
-    Factor<double> plain;
-    Factor<DoublePair> wide;
-    double *x, *raw, *within, *gradient[2], *path;
-    std::int64_t bytes;
-};
-
-SystemLayout lay_out(const MoleculeKind &s, char *memory) {
-    const std::int64_t entries = static_cast<std::int64_t>(s.entries.size()),
-                       fill = static_cast<std::int64_t>(s.row.size()),
-                       bonds = static_cast<std::int64_t>(s.bonds.size()), rows = s.n_rows, nodes = s.n_nodes;
-    Carving carving(memory);
-    SystemLayout m;
-    for (Conformation *which : {&m.now, &m.reference}) {
-        which->x = carving.take<PairVector>(s.n_atoms);
-        which->q = carving.take<PairVector>(nodes);
-        which->shift = carving.take<PairVector>(bonds);
-        which->gradient = carving.take<PairVector>(entries);
-    }
-    m.a = carving.take<PairVector>(nodes);
-    m.b = carving.take<PairVector>(nodes);
-    m.start = carving.take<PairVector>(nodes);
-    m.t = carving.take<DoublePair>(rows);
-    m.c = carving.take<DoublePair>(rows);
-    m.residual = carving.take<DoublePair>(rows);
-    m.wide_x = carving.take<DoublePair>(rows);
-    m.inverse = carving.take<DoublePair>(fill);
-    m.wide = {carving.take<DoublePair>(rows), carving.take<DoublePair>(fill), carving.take<DoublePair>(fill), nullptr};
-    m.plain = {carving.take<double>(rows), carving.take<double>(fill), carving.take<double>(fill),
-               carving.take<double>(rows)};
-    m.wide.before = m.plain.before;
-    m.x = carving.take<double>(rows);
-    m.raw = carving.take<double>(3 * std::int64_t{s.n_atoms});
-    m.gradient[0] = carving.take<double>(3 * entries);
-    m.gradient[1] = carving.take<double>(3 * entries);
-    m.path = carving.take<double>(3 * rows);
-    m.within = carving.take<double>(s.by_lengths ? 3 * (bonds + 2 * std::int64_t{s.n_held}) : 0);
-    m.bytes = (carving.used(memory) + 63) / 64 * 64;
-    return m;
-}
-
 }  // namespace
 
 PairVector told_image(const Cell &box, const MoleculeView &view, std::size_t bond) {
@@ -107,29 +63,39 @@ PairVector told_image(const Cell &box, const MoleculeView &view, std::size_t bon
 
 std::int64_t System::bytes(const MoleculeKind &kind) {
     alignas(64) static char nowhere[64];
-    return lay_out(kind, nowhere).bytes;
+    return System(kind, nullptr, nowhere).bytes_;
 }
 
 System::System(const MoleculeKind &kind, const Body *bodies, char *memory) : s_(kind), bodies_(bodies) {
-    const SystemLayout m = lay_out(kind, memory);
-    now = m.now;
-    reference = m.reference;
-    a = m.a;
-    b = m.b;
-    t = m.t;
-    c = m.c;
-    raw = m.raw;
-    within = m.within;
-    plain_ = m.plain;
-    wide_ = m.wide;
-    x_ = m.x;
-    wide_x_ = m.wide_x;
-    residual_ = m.residual;
-    inverse_ = m.inverse;
-    start_ = m.start;
-    gradient_[0] = m.gradient[0];
-    gradient_[1] = m.gradient[1];
-    path_ = m.path;
+    const std::int64_t entries = static_cast<std::int64_t>(kind.entries.size()),
+                       fill = static_cast<std::int64_t>(kind.row.size()),
+                       bonds = static_cast<std::int64_t>(kind.bonds.size()), rows = kind.n_rows, nodes = kind.n_nodes;
+    Carving carving(memory);
+    for (Conformation *which : {&now, &reference}) {
+        which->x = carving.take<PairVector>(kind.n_atoms);
+        which->q = carving.take<PairVector>(nodes);
+        which->shift = carving.take<PairVector>(bonds);
+        which->gradient = carving.take<PairVector>(entries);
+    }
+    a = carving.take<PairVector>(nodes);
+    b = carving.take<PairVector>(nodes);
+    start_ = carving.take<PairVector>(nodes);
+    t = carving.take<DoublePair>(rows);
+    c = carving.take<DoublePair>(rows);
+    residual_ = carving.take<DoublePair>(rows);
+    wide_x_ = carving.take<DoublePair>(rows);
+    inverse_ = carving.take<DoublePair>(fill);
+    wide_ = {carving.take<DoublePair>(rows), carving.take<DoublePair>(fill), carving.take<DoublePair>(fill), nullptr};
+    plain_ = {carving.take<double>(rows), carving.take<double>(fill), carving.take<double>(fill),
+              carving.take<double>(rows)};
+    wide_.before = plain_.before;
+    x_ = carving.take<double>(rows);
+    raw = carving.take<double>(3 * std::int64_t{kind.n_atoms});
+    gradient_[0] = carving.take<double>(3 * entries);
+    gradient_[1] = carving.take<double>(3 * entries);
+    path_ = carving.take<double>(3 * rows);
+    within = carving.take<double>(kind.by_lengths ? 3 * (bonds + 2 * std::int64_t{kind.n_held}) : 0);
+    bytes_ = (carving.used(memory) + 63) / 64 * 64;
 }
 
 void System::read(const AtomArray &r, const Cell &box, const MoleculeView &view, const Conformation &to) const {
@@ -188,7 +154,6 @@ void System::differentiate(const Conformation &where) const {
 }
 
 void System::velocities(const AtomArray &v, const MoleculeView &view, PairVector *nodes) const {
-    double x[3];
     for (const Part &part : s_.parts) {
         const Body &its = body(part);
         PairVector *const q = nodes + part.first_node;
@@ -196,35 +161,27 @@ void System::velocities(const AtomArray &v, const MoleculeView &view, PairVector
         const DoublePair *share = its.share.data();
         for (std::int32_t i = 0; i < its.n_atoms; ++i, share += 1 + its.rank) {
             if (!(its.masses[at(i)] > 0)) continue;
-            read_atom(v, view.atoms[part.first_atom + i], x);
-            const PairVector of_atom = {as_pair(x[0]), as_pair(x[1]), as_pair(x[2])};
+            const PairVector of_atom = vector_of_atom(v, view.atoms[part.first_atom + i]);
             for (std::int32_t p = 0; p <= its.rank; ++p) q[p] = q[p] + share[p] * of_atom;
         }
     }
-    for (std::int32_t i = s_.n_held; i < s_.n_atoms; ++i) {
-        read_atom(v, view.atoms[i], x);
-        nodes[s_.node_of[at(i)]] = {as_pair(x[0]), as_pair(x[1]), as_pair(x[2])};
-    }
+    for (std::int32_t i = s_.n_held; i < s_.n_atoms; ++i) nodes[s_.node_of[at(i)]] = vector_of_atom(v, view.atoms[i]);
 }
 
 void System::forces(const Conformation &where, const AtomArray &f, const MoleculeView &view, PairVector *nodes) const {
-    double x[3];
     for (const Part &part : s_.parts) {
         const Body &its = body(part);
         PairVector *const q = nodes + part.first_node;
         for (std::int32_t p = 0; p <= its.rank; ++p) q[p] = zero();
         for (std::int32_t i = 0; i < its.n_atoms; ++i) {
-            read_atom(f, view.atoms[part.first_atom + i], x);
-            const PairVector of_atom = {as_pair(x[0]), as_pair(x[1]), as_pair(x[2])};
+            const PairVector of_atom = vector_of_atom(f, view.atoms[part.first_atom + i]);
             q[0] = q[0] + (its.first.empty() ? of_atom : its.first[at(i)] * of_atom);
             for (std::int32_t p = 0; p < its.rank; ++p) q[1 + p] = q[1 + p] + its.y[at(i * its.rank + p)] * of_atom;
         }
         if (!its.z.empty()) carry_to_axes(where, part, lifted_force(part, f, view), nodes);
     }
-    for (std::int32_t i = s_.n_held; i < s_.n_atoms; ++i) {
-        if (i < s_.n_movable) read_atom(f, view.atoms[i], x);
-        nodes[s_.node_of[at(i)]] = i < s_.n_movable ? PairVector{as_pair(x[0]), as_pair(x[1]), as_pair(x[2])} : zero();
-    }
+    for (std::int32_t i = s_.n_held; i < s_.n_atoms; ++i)
+        nodes[s_.node_of[at(i)]] = i < s_.n_movable ? vector_of_atom(f, view.atoms[i]) : zero();
 }
 
 // The virtual work of forces where a fixed atom is shifted; that of the accelerations is 0.
@@ -233,9 +190,7 @@ void System::pass_to_fixed(const AtomArray &f, const MoleculeView &view, PairVec
         const Body &its = body(part);
         const std::size_t n_fixed = part.fixed.size();
         for (std::int32_t i = 0; n_fixed > 0 && i < its.n_atoms; ++i) {
-            double x[3];
-            read_atom(f, view.atoms[part.first_atom + i], x);
-            const PairVector of_atom = {as_pair(x[0]), as_pair(x[1]), as_pair(x[2])};
+            const PairVector of_atom = vector_of_atom(f, view.atoms[part.first_atom + i]);
             for (std::size_t j = 0; j < n_fixed; ++j) {
                 PairVector &node = nodes[s_.node_of[at(part.fixed[j])]];
                 node = node + its.of_fixed[at(i) * n_fixed + j] * of_atom;

@@ -6,6 +6,7 @@
 // the precision, too.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -32,6 +33,17 @@ struct Conformation {
     PairVector *shift;     // [n_bonds] by which a bond reaches another image than the way through the molecule
     PairVector *gradient;  // [entries]
 };
+
+// The vector of an atom, and the length of a vector, rounded.
+inline PairVector vector_of_atom(const AtomArray &array, std::int64_t atom) {
+    double x[3];
+    read_atom(array, atom, x);
+    return {as_pair(x[0]), as_pair(x[1]), as_pair(x[2])};
+}
+inline double size_of(const PairVector &a) {
+    const Vector3<double> v = rounded(a);
+    return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+}
 
 // The lattice vector that is told of a bond.
 PairVector told_image(const Cell &box, const MoleculeView &view, std::size_t bond);
@@ -118,6 +130,7 @@ private:
     PairVector *start_;
     double *gradient_[2];  // [entries][3] as doubles
     double *path_;         // [n_rows] three times
+    std::int64_t bytes_;   // of all arrays
 };
 
 }  // namespace holonomic::rigid

@@ -21,7 +21,7 @@ struct BodyVelocities final : BodyWork {
     VelocitiesCall call;
 
     BodyVelocities(const Chains &chains, const AtomArray &r_, const AtomArray &v_, double *lambda_, bool virial_)
-        : r(r_), v(v_), box(chains.box), rate(chains.box_rate()), lambda(lambda_),
+        : BodyWork(chains), r(r_), v(v_), box(chains.box), rate(chains.box_rate()), lambda(lambda_),
           virial(virial_), call{r_, v_, nullptr, virial_, nullptr, {}} {
         put_box(box, call.box);
     }
@@ -70,9 +70,7 @@ struct BodyVelocities final : BodyWork {
         const MoleculeKind &s = system.kind();
         double *force = force_within(system);
         for (std::int32_t i = 0; i < s.n_held; ++i) {
-            double x[3];
-            read_atom(v, view.atoms[i], x);
-            const PairVector before = {as_pair(x[0]), as_pair(x[1]), as_pair(x[2])};
+            const PairVector before = vector_of_atom(v, view.atoms[i]);
             const Vector3<double> impulse = rounded(s.mass[at(i)] * (system.at_atom(z, i) - before));
             *force++ = impulse.x, *force++ = impulse.y, *force++ = impulse.z;
         }
@@ -83,12 +81,8 @@ struct BodyVelocities final : BodyWork {
 }  // namespace
 
 void project_velocities(const Chains &chains, const AtomArray &r, const AtomArray &v, double *lambda, double *virial) {
-    const RunResult found = run(chains, BodyVelocities(chains, r, v, lambda, virial != nullptr));
-    if (found.tally.n_bad > 0) {
-        const Named arrays[] = {{"position", &r}, {"velocity", &v}};
-        throw error_of(chains, found, arrays, 2);
-    }
-    if (virial) add_virial(found.tally, virial);
+    run_all(chains, BodyVelocities(chains, r, v, lambda, virial != nullptr), {{"position", &r}, {"velocity", &v}},
+            virial);
 }
 
 }  // namespace holonomic::rigid

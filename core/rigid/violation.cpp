@@ -16,11 +16,6 @@ namespace holonomic::rigid {
 
 namespace {
 
-double size_of(const PairVector &a) {
-    const Vector3<double> v = rounded(a);
-    return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
-}
-
 // Whether a face of the box cuts a molecule, as it has been read: an atom was put into another image.
 bool is_cut(const System &system) {
     double straight = 0, moved = 0;
@@ -107,14 +102,10 @@ public:
                       const PairVector &u, const PairVector &w) {
                       each(std::fabs(rounded(square ? dot(p, u) : dot(p, w) + dot(q, u))), bond);
                   });
-        for (std::int32_t i = 0; i < s.n_held; ++i) {
-            double x[3];
-            read_atom(v, view.atoms[i], x);
-            const PairVector of_atom = {as_pair(x[0]), as_pair(x[1]), as_pair(x[2])};
-            each(size_of(system.velocity_of(system.now, system.b, rate, i) - of_atom) *
+        for (std::int32_t i = 0; i < s.n_held; ++i)
+            each(size_of(system.velocity_of(system.now, system.b, rate, i) - vector_of_atom(v, view.atoms[i])) *
                      system.body(s.parts[at(s.part_of[at(i)])]).extent,
                  -1);
-        }
     }
 
 private:
@@ -213,10 +204,7 @@ void violation(const Chains &chains, const AtomArray &r, const AtomArray &v, Wor
             });
         if (!finite) note_bad(view.number, bad.tally);
     });
-    if (bad.tally.n_bad > 0) {
-        const Named arrays[] = {{"position", &r}, {"velocity", &v}};
-        throw error_of(chains, bad, arrays, 2);
-    }
+    throw_if_bad(chains, bad, {{"position", &r}, {"velocity", &v}});
     const auto shown = [&](std::int64_t bond) { return bond < 0 ? -1 : bond + chains.base; };
     if (length.molecule >= 0 && (worst->length_molecule < 0 || length.error > worst->length)) {
         worst->length = length.error;
