@@ -53,18 +53,13 @@ __attribute__((always_inline)) inline Tally forces_at_rest(const Chains &chains,
     return tally;
 }
 
-[[noreturn, gnu::noinline]] void throw_error_of(const Chains &chains, const Tally &tally, const ForcesCall &call) {
-    const NamedArray arrays[] = {{"position", &call.r}, {"velocity", &call.v}, {"force", &call.f}};
-    throw_error(chains, tally,
-                [&](const Tally &bad) { return diagnose(chains, bad, chains.box, arrays, 3, Status::not_finite); });
-}
-
 void forces_of_bonds(const Chains &chains, ForcesCall &call, double *virial) {
     call.virial = virial != nullptr;
     put_box(chains.box, call.box);
     const BoxRate *const rate = chains.box_rate();
     const Tally tally = rate ? forces_in_motion(chains, rate->L, call) : forces_at_rest(chains, call);
-    if (tally.n_bad > 0) throw_error_of(chains, tally, call);
+    if (tally.n_bad > 0)
+        throw_diagnosis(chains, tally, {{"position", &call.r}, {"velocity", &call.v}, {"force", &call.f}});
     if (virial) write_virial(tally, virial);
 }
 

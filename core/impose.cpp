@@ -221,9 +221,8 @@ void finish(const Chains &chains, const AtomArray &r, const Approach &approach, 
     found.n_failed = tally.n_bad;
     if (report) *report = found;
     if (tally.n_bad == 0) return;
-    const NamedArray arrays[] = {{"position", &r}, {"position", &r}};  // the reference is r itself
-    throw_error(chains, tally,
-                [&](const Tally &bad) { return diagnose(chains, bad, chains.box, arrays, 2, Status::no_convergence); });
+    // The reference is r itself.
+    throw_diagnosis(chains, tally, {{"position", &r}, {"position", &r}}, Status::no_convergence);
 }
 
 }  // namespace

@@ -60,11 +60,7 @@ double metric_of_bonds(const Chains &chains, MetricCall &call) {
     Staging staging(chains);
     const Tally tally = execute(chains, MetricWork(call, staging, extended_bytes));
     staging.put_back();
-    if (tally.n_bad > 0) {
-        const NamedArray arrays[] = {{"position", &call.r}};
-        throw_error(chains, tally,
-                    [&](const Tally &bad) { return diagnose(chains, bad, chains.box, arrays, 1, Status::not_finite); });
-    }
+    if (tally.n_bad > 0) throw_diagnosis(chains, tally, {{"position", &call.r}});
     return tally.log_det;
 }
 

@@ -72,13 +72,14 @@ Report report_of(const Chains &chains, const Tally &tally) {
 
 [[noreturn, gnu::noinline]] void throw_error_of(const Chains &chains, const Tally &tally, const PositionsCall &call,
                                                 const Reference *reference, const Box &box_ref) {
-    const NamedArray arrays[] = {{"reference position", &call.r_ref}, {"position", &call.r}, {"velocity", &call.v}};
     throw_error(chains, tally, [&](const Tally &bad) {
         Error error;
         if (chains.checks() != Checks::never && is_stretched(chains, bad.first_bad, call.r, bad.n_bad, &error))
             return error;
         if (reference) reference->show(bad.first_bad);
-        return diagnose(chains, bad, box_ref, arrays, 3, Status::no_convergence);
+        return diagnose(chains, bad, box_ref,
+                        {{"reference position", &call.r_ref}, {"position", &call.r}, {"velocity", &call.v}},
+                        Status::no_convergence);
     });
 }
 

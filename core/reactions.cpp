@@ -218,8 +218,7 @@ void reactions_of_bonds(const Chains &chains, const AtomArray &r, const Cell &bo
     const Tally tally = react(chains, r, box, lambda, out);
     if (tally.n_bad > 0) {
         check_values(chains, tally, lambda, "multiplier");
-        const NamedArray arrays[] = {{"position", &r}};
-        throw diagnose(chains, tally, box, arrays, 1, Status::not_finite);
+        throw diagnose(chains, tally, box, {{"position", &r}}, Status::not_finite);
     }
     if (virial) write_virial(tally, virial);
 }

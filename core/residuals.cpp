@@ -44,8 +44,7 @@ void residuals_of_bonds(const Chains &chains, const AtomArray &r, const AtomArra
     clear_unconstrained(chains, length);
     clear_unconstrained(chains, rate);
     if (tally.n_bad == 0) return;
-    const NamedArray arrays[] = {{"position", &r}, {"velocity", &v}};
-    Error error = diagnose(chains, tally, chains.box, arrays, 2, Status::not_finite);
+    Error error = diagnose(chains, tally, chains.box, {{"position", &r}, {"velocity", &v}}, Status::not_finite);
     error.status = Status::not_finite;  // whatever else is wrong with that molecule, it gives no number
     throw error;
 }

@@ -80,10 +80,9 @@ void solve_bonds(const Chains &chains, const AtomArray &r, const double *rhs, do
                  bool add, double *virial) {
     const Tally tally = solve_equations(chains, r, rhs, {lambda, nullptr, g, add, virial != nullptr});
     if (tally.n_bad > 0) {
-        const NamedArray arrays[] = {{"position", &r}};
         throw_error(chains, tally, [&](const Tally &bad) {
             check_values(chains, bad, rhs, "right-hand side");  // a bad molecule's lambda was not written
-            return diagnose(chains, bad, chains.box, arrays, 1, Status::not_finite);
+            return diagnose(chains, bad, chains.box, {{"position", &r}}, Status::not_finite);
         });
     }
     if (virial) write_virial(tally, virial);

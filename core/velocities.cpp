@@ -37,12 +37,6 @@ struct VelocitiesWork final
     }
 };
 
-[[noreturn, gnu::noinline]] void throw_error_of(const Chains &chains, const Tally &tally, const VelocitiesCall &call) {
-    const NamedArray arrays[] = {{"position", &call.r}, {"velocity", &call.v}};
-    throw_error(chains, tally,
-                [&](const Tally &bad) { return diagnose(chains, bad, chains.box, arrays, 2, Status::not_finite); });
-}
-
 void project_velocities_of_bonds(const Chains &chains, VelocitiesCall &call, double *virial) {
     call.virial = virial != nullptr;
     call.strain = chains.box_rate() ? chains.box_rate()->strain : nullptr;
@@ -53,7 +47,7 @@ void project_velocities_of_bonds(const Chains &chains, VelocitiesCall &call, dou
     const Tally tally = execute(chains, VelocitiesWork(call, staging));
     staging.put_back();
     clear_unconstrained(chains, call.lambda);
-    if (tally.n_bad > 0) throw_error_of(chains, tally, call);
+    if (tally.n_bad > 0) throw_diagnosis(chains, tally, {{"position", &call.r}, {"velocity", &call.v}});
     if (virial) write_virial(tally, virial);
 }
 

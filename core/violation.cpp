@@ -53,8 +53,7 @@ void violation_of_bonds(const Chains &chains, const AtomArray &r, const AtomArra
         if (!finite) note_bad(chain, tally);
     }
     if (tally.n_bad > 0) {
-        const NamedArray arrays[] = {{"position", &r}, {"velocity", &v}};
-        Error error = diagnose(chains, tally, chains.box, arrays, 2, Status::not_finite);
+        Error error = diagnose(chains, tally, chains.box, {{"position", &r}, {"velocity", &v}}, Status::not_finite);
         error.status = Status::not_finite;  // whatever else is wrong with that chain, it gives no number
         throw error;
     }

@@ -18,8 +18,7 @@ void Inverse::refuse(const Chains &chains, std::int64_t molecule, const AtomArra
     Tally tally{};
     tally.n_bad = 1;
     tally.first_bad = molecule;
-    const NamedArray arrays[] = {{"position", &r}};
-    throw diagnose(chains, tally, chains.box, arrays, 1, Status::not_finite);
+    throw diagnose(chains, tally, chains.box, {{"position", &r}}, Status::not_finite);
 }
 
 void Inverse::check(std::int64_t i) const {

@@ -7,6 +7,7 @@
 #include "core/caller/packed_array.hpp"
 #include "core/inverse/extended_molecule.hpp"
 #include "core/run/bond_words.hpp"
+#include "core/run/outcomes.hpp"
 
 namespace holonomic {
 
@@ -200,9 +201,14 @@ void check_values(const Chains &chains, const Tally &tally, const double *values
     }
 }
 
-Error diagnose(const Chains &chains, const Tally &tally, const Box &box, const NamedArray *arrays, int n_arrays,
+Error diagnose(const Chains &chains, const Tally &tally, const Box &box, std::initializer_list<NamedArray> arrays,
                Status otherwise) {
-    return Diagnosis(chains, tally, box).find(arrays, n_arrays, otherwise);
+    return Diagnosis(chains, tally, box).find(arrays.begin(), static_cast<int>(arrays.size()), otherwise);
+}
+
+void throw_diagnosis(const Chains &chains, const Tally &tally, std::initializer_list<NamedArray> arrays,
+                     Status otherwise) {
+    throw_error(chains, tally, [&](const Tally &bad) { return diagnose(chains, bad, chains.box, arrays, otherwise); });
 }
 
 }  // namespace holonomic
