@@ -36,24 +36,12 @@ module holonomic_factors
 contains
 
 #define ROWS 32
-#define UPDATE update_rows_32
-#define FORCES forces_rows_32
-#define SOLVE solve_rows_32
 #include "factors.inc"
 #define ROWS 64
-#define UPDATE update_rows_64
-#define FORCES forces_rows_64
-#define SOLVE solve_rows_64
 #include "factors.inc"
 #define PARTS 32
-#define UPDATE update_parts_32
-#define FORCES forces_parts_32
-#define SOLVE solve_parts_32
 #include "factors.inc"
 #define PARTS 64
-#define UPDATE update_parts_64
-#define FORCES forces_parts_64
-#define SOLVE solve_parts_64
 #include "factors.inc"
 
    subroutine create(self, chains, stat, errmsg)

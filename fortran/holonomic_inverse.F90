@@ -113,12 +113,8 @@ contains
    end function
 
 #define INTEGERS 32
-#define ENTRY_OF entry_32
-#define ROW row_32
 #include "inverse_entry.inc"
 #define INTEGERS 64
-#define ENTRY_OF entry_64
-#define ROW row_64
 #include "inverse_entry.inc"
 
    ! band(0:width, n_bonds): element (i, i + k) at band(k, i), 0 where i + k is past the last bond.
@@ -176,16 +172,12 @@ contains
    end subroutine
 
 #define ROWS 32
-#define BOUND bound_rows_32
 #include "inverse_bound.inc"
 #define ROWS 64
-#define BOUND bound_rows_64
 #include "inverse_bound.inc"
 #define PARTS 32
-#define BOUND bound_parts_32
 #include "inverse_bound.inc"
 #define PARTS 64
-#define BOUND bound_parts_64
 #include "inverse_bound.inc"
 
    recursive subroutine bound_at(self, problem, lambda, at_v, at_f, bound, relative, stat, errmsg)
