@@ -1,6 +1,10 @@
 // Numbers of twice the precision, hi + lo, outside the kernels: for what is evaluated once and must not lose digits.
 #pragma once
 
+#include <cstdint>
+
+#include "core/kernels/atom.hpp"
+
 #define HOL_ISA plain
 #define HOL_LANES 2
 #include "core/kernels/extended/wide.hpp"
@@ -14,6 +18,11 @@ using DoublePair = plain::Wide;
 using PairVector = plain::Wide3;
 
 inline DoublePair as_pair(double a) { return {a, 0}; }
+inline PairVector vector_of_atom(const AtomArray &array, std::int64_t atom) {
+    double x[3];
+    read_atom(array, atom, x);
+    return {as_pair(x[0]), as_pair(x[1]), as_pair(x[2])};
+}
 using plain::dot;
 using plain::rounded;
 

@@ -1,18 +1,11 @@
 // How far given multipliers are from the exact ones: theory (37).
 #include <cmath>
 
-#include "core/caller/packed_array.hpp"
 #include "core/inverse/chain_inverse.hpp"
 
 namespace holonomic {
 
 namespace {
-
-PairVector vector_of(const AtomArray &array, std::int64_t atom) {
-    double x[3];
-    read_atom(array, atom, x);
-    return {as_pair(x[0]), as_pair(x[1]), as_pair(x[2])};
-}
 
 PairVector combined(const DoublePair &a, const PairVector &x, const DoublePair &b, const PairVector &y) {
     return {a * x.x + b * y.x, a * x.y + b * y.y, a * x.z + b * y.z};
@@ -39,12 +32,13 @@ DoublePair ChainInverse::residual(const AtomArray &v, const AtomArray &f, const 
     if (k > 0) sum = sum + neighbour(k - 1, w0);
     if (k + 1 < n_) sum = sum + neighbour(k + 1, w1);
     if (f.x) {
-        const PairVector f0 = vector_of(f, atoms_[k]), f1 = vector_of(f, atoms_[k + 1]);
+        const PairVector f0 = vector_of_atom(f, atoms_[k]), f1 = vector_of_atom(f, atoms_[k + 1]);
         sum = sum + dot(d, combined(w1, f1, -w0, f0));
         terms += size(d) * (w1.hi * size(f1) + w0.hi * size(f0));
     }
     if (v.x) {
-        const PairVector dv = combined(as_pair(1), vector_of(v, atoms_[k + 1]), minus, vector_of(v, atoms_[k]));
+        const PairVector dv =
+            combined(as_pair(1), vector_of_atom(v, atoms_[k + 1]), minus, vector_of_atom(v, atoms_[k]));
         const DoublePair square = dot(dv, dv);
         sum = sum + square;
         terms += square.hi;
@@ -55,7 +49,8 @@ DoublePair ChainInverse::residual(const AtomArray &v, const AtomArray &f, const 
 // Whether anything that stands in the equation of bond k is not zero; where nothing is, its residual is exactly zero.
 bool ChainInverse::touched(const AtomArray &v, const AtomArray &f, const double *lambda, std::size_t k) const {
     const auto any = [&](const AtomArray &array) {
-        return array.x && (size(vector_of(array, atoms_[k])) > 0 || size(vector_of(array, atoms_[k + 1])) > 0);
+        return array.x &&
+               (size(vector_of_atom(array, atoms_[k])) > 0 || size(vector_of_atom(array, atoms_[k + 1])) > 0);
     };
     return any(v) || any(f) || lambda[k] != 0 || (k > 0 && lambda[k - 1] != 0) || (k + 1 < n_ && lambda[k + 1] != 0);
 }

@@ -1,7 +1,6 @@
 // How far given multipliers of a molecule are from the exact ones: |A^-1| times what they leave of its equations.
 #include <cmath>
 
-#include "core/caller/packed_array.hpp"
 #include "core/inverse/molecule_inverse.hpp"
 
 namespace holonomic {
@@ -9,9 +8,7 @@ namespace holonomic {
 namespace {
 
 PairVector vector_of(const AtomArray &array, std::int64_t atom) {
-    double x[3] = {0, 0, 0};
-    if (array.x) read_atom(array, atom, x);
-    return {as_pair(x[0]), as_pair(x[1]), as_pair(x[2])};
+    return array.x ? vector_of_atom(array, atom) : PairVector{};
 }
 
 double size_of(const PairVector &a) { return std::fabs(a.x.hi) + std::fabs(a.y.hi) + std::fabs(a.z.hi); }

@@ -144,7 +144,6 @@ public:
         }
         return true;
     }
-    Lane lane(std::int64_t molecule) const;  // of a linear chain
     const Cell &box_of_reference() const { return has_reference_box_ ? reference_box_ : box; }
     const BoxRate *box_rate() const { return has_box_rate_ ? &box_rate_ : nullptr; }
 

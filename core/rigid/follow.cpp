@@ -33,11 +33,7 @@ int System::follow(const Conformation &from, const Conformation &to, DoublePair 
     // q as tau moves it, and what is left of the rows, in x_.
     const auto move = [&](double part) {
         for (std::int32_t i = 0; i < s_.n_nodes; ++i) to.q[i] = from.q[i] + part * (start_[i] - from.q[i]);
-        for (std::int32_t k = 0; k < n; ++k)
-            for (std::int32_t e = s_.entry_start[at(k)]; e < s_.entry_start[at(k + 1)]; ++e) {
-                const std::int32_t node = s_.entries[at(e)].node;
-                if (s_.w[at(node)] > 0) to.q[node] = to.q[node] - (s_.w[at(node)] * tau[k]) * from.gradient[e];
-            }
+        for (std::int32_t k = 0; k < n; ++k) move_along(from, k, tau[k], to.q);
         residuals(to, residual_);
         double error = 0;
         for (std::int32_t k = 0; k < n; ++k) {

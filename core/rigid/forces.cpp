@@ -94,9 +94,6 @@ struct BodyForces final : BodyWork {
         return kernels().bodies.forces(call, unit, scratch, results);
     }
     bool has_results() const override { return virial; }
-    void done(const BodyResult &result, std::int64_t, Tally &tally) const override {
-        for (int i = 0; i < 6; ++i) tally.virial[i] += result.virial[i];
-    }
 
     Outcome molecule(const System &system, const MoleculeView &view, Tally &tally) const override {
         const MoleculeKind &s = system.kind();

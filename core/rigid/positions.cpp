@@ -47,7 +47,7 @@ struct BodyPositions final : BodyWork {
     }
     bool has_results() const override { return virial || report; }
     void done(const BodyResult &result, std::int64_t number, Tally &tally) const override {
-        for (int i = 0; i < 6 && virial; ++i) tally.virial[i] += result.virial[i];
+        if (virial) BodyWork::done(result, number, tally);
         note(number, result.iterations, true, result.error, -1, tally);
     }
 

@@ -112,8 +112,9 @@ private:
                 molecule(molecules[l]);
                 continue;
             }
-            with_outcome(outcome_of(molecules[l]), found_.tally,
-                         [&](Tally &tally) { work_.done(results[l], chains_.n_chains() + molecules[l], tally); });
+            with_outcome(outcome_of(molecules[l]), found_.tally, [&](Tally &tally) {
+                if (work_.has_results()) work_.done(results[l], chains_.n_chains() + molecules[l], tally);
+            });
         }
         return next;
     }

@@ -30,9 +30,12 @@ public:
     // bonds: also those that have some within them, whose values are wanted.
     virtual bool takes_blocks(bool bonds) const { return static_cast<void>(bonds), false; }
     virtual std::uint64_t bodies(const BodyUnit &, double *, BodyResult *) const { return 0; }
-    // What a body that is done adds to the tally, if anything.
+    // What a body that is done adds to the tally, if anything: its virial, or what else a verb has.
     virtual bool has_results() const { return false; }
-    virtual void done(const BodyResult &, std::int64_t number, Tally &) const { static_cast<void>(number); }
+    virtual void done(const BodyResult &result, std::int64_t number, Tally &tally) const {
+        static_cast<void>(number);
+        for (int i = 0; i < 6; ++i) tally.virial[i] += result.virial[i];
+    }
 
 protected:
     ~BodyWork() = default;

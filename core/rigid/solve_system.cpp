@@ -121,10 +121,7 @@ Outcome System::project_with(const Factor<T> &f, T *x, const Conformation &where
             multipliers[k] = multipliers[k] + wide_of(x[k]);
             correction = std::max(correction, std::fabs(first_word(x[k])) * unit);
             whole = std::max(whole, std::fabs(multipliers[k].hi) * unit);
-            for (std::int32_t e = s_.entry_start[at(k)]; e < s_.entry_start[at(k + 1)]; ++e) {
-                const std::int32_t node = s_.entries[at(e)].node;
-                if (s_.w[at(node)] > 0) z[node] = z[node] - (s_.w[at(node)] * wide_of(x[k])) * where.gradient[e];
-            }
+            move_along(where, k, wide_of(x[k]), z);
         }
         if (!std::isfinite(correction) || !std::isfinite(whole)) return Outcome::not_finite;
         if (correction <= small_correction * whole) return Outcome::good;
@@ -163,10 +160,7 @@ Outcome System::restore_with(const Factor<T> &f, T *x, const Conformation &from,
         f.solve(s_, x);
         for (std::int32_t k = 0; k < s_.n_rows; ++k) {
             multipliers[k] = multipliers[k] + wide_of(x[k]);
-            for (std::int32_t e = s_.entry_start[at(k)]; e < s_.entry_start[at(k + 1)]; ++e) {
-                const std::int32_t node = s_.entries[at(e)].node;
-                if (s_.w[at(node)] > 0) to.q[node] = to.q[node] - (s_.w[at(node)] * wide_of(x[k])) * from.gradient[e];
-            }
+            move_along(from, k, wide_of(x[k]), to.q);
         }
     }
 }

@@ -11,6 +11,7 @@
 #include <cstdint>
 
 #include "core/caller/box.hpp"
+#include "core/index.hpp"
 #include "core/kernels/atom.hpp"
 #include "core/rigid/factor.hpp"
 
@@ -34,12 +35,7 @@ struct Conformation {
     PairVector *gradient;  // [entries]
 };
 
-// The vector of an atom, and the length of a vector, rounded.
-inline PairVector vector_of_atom(const AtomArray &array, std::int64_t atom) {
-    double x[3];
-    read_atom(array, atom, x);
-    return {as_pair(x[0]), as_pair(x[1]), as_pair(x[2])};
-}
+// The length of a vector, rounded.
 inline double size_of(const PairVector &a) {
     const Vector3<double> v = rounded(a);
     return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
@@ -110,6 +106,15 @@ private:
     // The sum of z f over sites off the plane of a part.
     PairVector lifted_force(const Part &part, const AtomArray &f, const MoleculeView &view) const;
     void carry_to_axes(const Conformation &at, const Part &part, const PairVector &lifted, PairVector *nodes) const;
+
+    // Adds -w times a multiplier times the gradient of a row to z of the nodes that move.
+    template <class T>
+    void move_along(const Conformation &where, std::int32_t row, const T &multiplier, PairVector *z) const {
+        for (std::int32_t e = s_.entry_start[at(row)]; e < s_.entry_start[at(row + 1)]; ++e) {
+            const std::int32_t node = s_.entries[at(e)].node;
+            if (s_.w[at(node)] > 0) z[node] = z[node] - (s_.w[at(node)] * multiplier) * where.gradient[e];
+        }
+    }
 
     template <class T>
     std::int32_t assemble(const Factor<T> &f, const Conformation &rows, const Conformation &columns) const;

@@ -58,11 +58,6 @@ MoleculeLane Chains::molecule_lane_of(const Plan &plan, const Group &group, std:
     return lane;
 }
 
-Lane Chains::lane(std::int64_t molecule) const {
-    const Group &group = groups_.of_molecule(molecule);
-    return lane_of(group, molecule - group.first_molecule, -1);
-}
-
 Unit Chains::unit(const Plan &plan, const Plan::Chunk &p, Lane *lane) const {
     const bool large = plan.n_bonds > bonds_in_cache;
     if (p.group >= 0) {
