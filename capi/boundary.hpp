@@ -27,8 +27,9 @@ namespace holonomic {
 int remember(const char *function, const Error &error) noexcept;
 
 // Throws Status::null if p is a null pointer.
+[[noreturn]] void throw_null(const char *name);
 inline void need(const void *p, const char *name) {
-    if (!p) throw make_error(Status::null, "%s is NULL", name);
+    if (!p) throw_null(name);
 }
 
 // The same of an array of `count` elements: of none it is not needed.
@@ -45,11 +46,13 @@ inline void check_n_bonds(std::int64_t n_bonds) {
 // `function` is the name of the caller's, with which messages begin.
 // Inlined by force: a call on one short chain would spend a tenth of its time in handing down its arguments once more.
 // Arithmetic: LongDoubleEnvironment for a body that calculates with long double. Functions that are not guarded
-// calculate nothing.
+// calculate nothing. missing: the name of an argument that is null, or nullptr.
 template <class Arithmetic = DefaultEnvironment, class Body>
-__attribute__((always_inline)) inline int guarded(const char *function, const Body &body) noexcept {
+__attribute__((always_inline)) inline int guarded(const char *function, const Body &body,
+                                                  const char *missing = nullptr) noexcept {
     const Arithmetic arithmetic;
     try {
+        if (missing) throw_null(missing);
         body();
         return HOL_OK;
     } catch (const Error &error) {
@@ -61,6 +64,13 @@ __attribute__((always_inline)) inline int guarded(const char *function, const Bo
     } catch (...) {
         return remember(function, make_error(Status::internal, "internal error"));
     }
+}
+
+// The same of a function of a set, which must be there.
+template <class Arithmetic = DefaultEnvironment, class Body>
+__attribute__((always_inline)) inline int guarded(const char *function, const hol_chains *chains,
+                                                  const Body &body) noexcept {
+    return guarded<Arithmetic>(function, body, chains ? nullptr : "chains");
 }
 
 }  // namespace holonomic

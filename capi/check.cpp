@@ -14,7 +14,6 @@ namespace {
 // Of packed doubles, or of a view.
 template <class In>
 void check(const hol_chains *chains, const In *given, hol_which_box box) {
-    need(chains, "chains");
     need(chains->n_atoms(), given, "r");
     const AtomArray r = holonomic::array_of(chains->n_atoms(), given, "r");
     const holonomic::Cell &its = holonomic::box_of(chains, box);
@@ -28,9 +27,9 @@ void check(const hol_chains *chains, const In *given, hol_which_box box) {
 }  // namespace
 
 int hol_chains_check(const hol_chains *chains, const double *r, hol_which_box box) {
-    return guarded(__func__, [&] { check(chains, r, box); });
+    return guarded(__func__, chains, [&] { check(chains, r, box); });
 }
 
 int hol_chains_check_view(const hol_chains *chains, const hol_const_view *r, hol_which_box box) {
-    return guarded(__func__, [&] { check(chains, r, box); });
+    return guarded(__func__, chains, [&] { check(chains, r, box); });
 }

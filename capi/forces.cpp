@@ -15,7 +15,6 @@ namespace {
 template <class In, class Out>
 __attribute__((always_inline)) inline void run(const hol_chains *chains, const In *r, const In *v, const In *f,
                                                double *lambda, double *tension, Out *g, hol_mode mode, double *virial) {
-    need(chains, "chains");
     need(chains->n_atoms(), r, "r");
     holonomic::ForcesCall call;
     call.r = array_of(chains->n_atoms(), r, "r");
@@ -37,10 +36,10 @@ __attribute__((always_inline)) inline void run(const hol_chains *chains, const I
 
 int hol_forces(const hol_chains *chains, const double *r, const double *v, const double *f, double *lambda,
                double *tension, double *g, hol_mode mode, double *virial) {
-    return guarded(__func__, [&] { run(chains, r, v, f, lambda, tension, g, mode, virial); });
+    return guarded(__func__, chains, [&] { run(chains, r, v, f, lambda, tension, g, mode, virial); });
 }
 
 int hol_forces_view(const hol_chains *chains, const hol_const_view *r, const hol_const_view *v, const hol_const_view *f,
                     double *lambda, double *tension, const hol_view *g, hol_mode mode, double *virial) {
-    return guarded(__func__, [&] { run(chains, r, v, f, lambda, tension, g, mode, virial); });
+    return guarded(__func__, chains, [&] { run(chains, r, v, f, lambda, tension, g, mode, virial); });
 }

@@ -24,7 +24,6 @@ namespace {
 // Of packed doubles, or of a view.
 template <class In>
 void create(const hol_chains *chains, std::int64_t molecule, const In *r, hol_inverse **inverse) {
-    need(chains, "chains");
     need(r, "r");
     need(inverse, "inverse");
     const holonomic::Chains &all = chains->chains;
@@ -80,13 +79,13 @@ void error_bound(const hol_inverse *inverse, const In *v, const In *f, const dou
 
 int hol_inverse_create(const hol_chains *chains, int64_t molecule, const double *r, hol_inverse **inverse) {
     if (inverse) *inverse = nullptr;
-    return guarded(__func__, [&] { create(chains, molecule, r, inverse); });
+    return guarded(__func__, chains, [&] { create(chains, molecule, r, inverse); });
 }
 
 int hol_inverse_create_view(const hol_chains *chains, int64_t molecule, const hol_const_view *r,
                             hol_inverse **inverse) {
     if (inverse) *inverse = nullptr;
-    return guarded(__func__, [&] { create(chains, molecule, r, inverse); });
+    return guarded(__func__, chains, [&] { create(chains, molecule, r, inverse); });
 }
 
 void hol_inverse_destroy(hol_inverse *inverse) { delete inverse; }

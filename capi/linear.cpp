@@ -6,9 +6,8 @@ using holonomic::need;
 
 namespace {
 
-void need_relations(const hol_chains *chains, const int64_t *sizes, const int64_t *atoms, const double *coefficients,
-                    int64_t n_bonds, const int64_t *pairs, const double *lengths) {
-    need(chains, "chains");
+void need_relations(const int64_t *sizes, const int64_t *atoms, const double *coefficients, int64_t n_bonds,
+                    const int64_t *pairs, const double *lengths) {
     need(sizes, "sizes");
     need(atoms, "atoms");
     need(coefficients, "coefficients");
@@ -23,8 +22,8 @@ void need_relations(const hol_chains *chains, const int64_t *sizes, const int64_
 
 int hol_chains_add_linear(hol_chains *chains, int64_t n_relations, const int64_t *sizes, const int64_t *atoms,
                           const double *coefficients, int64_t n_bonds, const int64_t *pairs, const double *lengths) {
-    return guarded(__func__, [&] {
-        need_relations(chains, sizes, atoms, coefficients, n_bonds, pairs, lengths);
+    return guarded(__func__, chains, [&] {
+        need_relations(sizes, atoms, coefficients, n_bonds, pairs, lengths);
         chains->chains.add_linear(n_relations, sizes, atoms, coefficients, n_bonds, pairs, lengths);
     });
 }
@@ -33,8 +32,8 @@ int hol_chains_add_linear_molecules(hol_chains *chains, int64_t n_molecules, int
                                     int64_t n_relations, const int64_t *sizes, const int64_t *atoms,
                                     const double *coefficients, int64_t n_bonds, const int64_t *pairs,
                                     const double *lengths) {
-    return guarded(__func__, [&] {
-        need_relations(chains, sizes, atoms, coefficients, n_bonds, pairs, lengths);
+    return guarded(__func__, chains, [&] {
+        need_relations(sizes, atoms, coefficients, n_bonds, pairs, lengths);
         chains->chains.add_linear_molecules(n_molecules, n_atoms, first_atom, n_relations, sizes, atoms, coefficients,
                                             n_bonds, pairs, lengths);
     });

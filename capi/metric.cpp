@@ -14,7 +14,6 @@ namespace {
 template <class In, class Out>
 void run(const hol_chains *chains, const In *r, double kT, double *log_det, double *log_det_z, double *energy,
          Out *force, hol_mode mode) {
-    need(chains, "chains");
     need(chains->n_atoms(), r, "r");
     holonomic::MetricCall call;
     call.r = array_of(chains->n_atoms(), r, "r");
@@ -32,10 +31,10 @@ void run(const hol_chains *chains, const In *r, double kT, double *log_det, doub
 
 int hol_metric(const hol_chains *chains, const double *r, double kT, double *log_det, double *log_det_z, double *energy,
                double *force, hol_mode mode) {
-    return guarded(__func__, [&] { run(chains, r, kT, log_det, log_det_z, energy, force, mode); });
+    return guarded(__func__, chains, [&] { run(chains, r, kT, log_det, log_det_z, energy, force, mode); });
 }
 
 int hol_metric_view(const hol_chains *chains, const hol_const_view *r, double kT, double *log_det, double *log_det_z,
                     double *energy, const hol_view *force, hol_mode mode) {
-    return guarded(__func__, [&] { run(chains, r, kT, log_det, log_det_z, energy, force, mode); });
+    return guarded(__func__, chains, [&] { run(chains, r, kT, log_det, log_det_z, energy, force, mode); });
 }

@@ -9,16 +9,14 @@ using holonomic::OutcomeOf;
 using holonomic::Status;
 
 int hol_chains_set_outcomes(hol_chains *chains, int keep) {
-    return guarded(__func__, [&] {
-        need(chains, "chains");
+    return guarded(__func__, chains, [&] {
         if (keep != 0 && keep != 1) throw make_error(Status::value, "keep is %d; it must be 0 or 1", keep);
         chains->chains.keeps_outcomes = keep == 1;
     });
 }
 
 int hol_outcomes(const hol_chains *chains, int *status, int *iterations) {
-    return guarded(__func__, [&] {
-        need(chains, "chains");
+    return guarded(__func__, chains, [&] {
         const OutcomeOf *const outcomes = holonomic::last_outcomes(chains->chains);
         if (!outcomes)
             throw make_error(Status::state,

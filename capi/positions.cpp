@@ -29,7 +29,6 @@ template <bool along, class In, class Out>
 __attribute__((always_inline)) inline void project(const hol_chains *chains, const In *given, Out *r, Out *v, double dt,
                                                    double *lambda, int guess, double *virial, hol_report *report) {
     constexpr const char *name = along ? "b" : "r_ref";
-    need(chains, "chains");
     const std::int64_t n_atoms = chains->n_atoms(), n_given = along ? chains->n_bonds() : n_atoms;
     need(n_given, given, name);
     need(n_atoms, r, "r");
@@ -53,29 +52,28 @@ __attribute__((always_inline)) inline void project(const hol_chains *chains, con
 
 int hol_project_positions(const hol_chains *chains, const double *r_ref, double *r, double *v, double dt,
                           double *lambda, int guess, double *virial, hol_report *report) {
-    return guarded(__func__, [&] { project<false>(chains, r_ref, r, v, dt, lambda, guess, virial, report); });
+    return guarded(__func__, chains, [&] { project<false>(chains, r_ref, r, v, dt, lambda, guess, virial, report); });
 }
 
 int hol_project_positions_view(const hol_chains *chains, const hol_const_view *r_ref, const hol_view *r,
                                const hol_view *v, double dt, double *lambda, int guess, double *virial,
                                hol_report *report) {
-    return guarded(__func__, [&] { project<false>(chains, r_ref, r, v, dt, lambda, guess, virial, report); });
+    return guarded(__func__, chains, [&] { project<false>(chains, r_ref, r, v, dt, lambda, guess, virial, report); });
 }
 
 int hol_project_positions_along(const hol_chains *chains, const double *b, double *r, double *v, double dt,
                                 double *lambda, int guess, double *virial, hol_report *report) {
-    return guarded(__func__, [&] { project<true>(chains, b, r, v, dt, lambda, guess, virial, report); });
+    return guarded(__func__, chains, [&] { project<true>(chains, b, r, v, dt, lambda, guess, virial, report); });
 }
 
 int hol_project_positions_along_view(const hol_chains *chains, const hol_const_view *b, const hol_view *r,
                                      const hol_view *v, double dt, double *lambda, int guess, double *virial,
                                      hol_report *report) {
-    return guarded(__func__, [&] { project<true>(chains, b, r, v, dt, lambda, guess, virial, report); });
+    return guarded(__func__, chains, [&] { project<true>(chains, b, r, v, dt, lambda, guess, virial, report); });
 }
 
 int hol_reference_error(const hol_chains *chains, double *error, int64_t *molecule, int64_t *bond) {
-    return guarded(__func__, [&] {
-        need(chains, "chains");
+    return guarded(__func__, chains, [&] {
         holonomic::WorstLength found;
         if (!chains->reference_error.get(&found))
             throw make_error(Status::state, "no reference has been compared with the lengths yet");

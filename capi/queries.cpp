@@ -44,16 +44,14 @@ int64_t hol_chains_n_molecules(const hol_chains *chains) { return chains ? chain
 int64_t hol_chains_n_bonds(const hol_chains *chains) { return chains ? chains->chains.n_bonds() : 0; }
 
 int hol_chains_offsets(const hol_chains *chains, int64_t *offsets) {
-    return guarded(__func__, [&] {
-        need(chains, "chains");
+    return guarded(__func__, chains, [&] {
         need(offsets, "offsets");
         chains->chains.offsets(offsets);
     });
 }
 
 int hol_chains_molecule(const hol_chains *chains, int64_t molecule, int *shape, int64_t *n_atoms, int64_t *n_bonds) {
-    return guarded(__func__, [&] {
-        need(chains, "chains");
+    return guarded(__func__, chains, [&] {
         const holonomic::Chains &all = chains->chains;
         const int64_t number = from_zero(all, molecule);
         if (shape) *shape = all.topology_of(number);
@@ -63,64 +61,56 @@ int hol_chains_molecule(const hol_chains *chains, int64_t molecule, int *shape, 
 }
 
 int hol_chains_atoms(const hol_chains *chains, int64_t molecule, int64_t *atoms) {
-    return guarded(__func__, [&] {
-        need(chains, "chains");
+    return guarded(__func__, chains, [&] {
         need(atoms, "atoms");
         chains->chains.atoms(from_zero(chains->chains, molecule), atoms);
     });
 }
 
 int hol_chains_bonds(const hol_chains *chains, int64_t molecule, int64_t *bonds) {
-    return guarded(__func__, [&] {
-        need(chains, "chains");
+    return guarded(__func__, chains, [&] {
         need(bonds, "bonds");
         chains->chains.bonds(from_zero(chains->chains, molecule), bonds);
     });
 }
 
 int hol_chains_molecules_of_bonds(const hol_chains *chains, int64_t *molecules) {
-    return guarded(__func__, [&] {
-        need(chains, "chains");
+    return guarded(__func__, chains, [&] {
         need(chains->n_bonds(), molecules, "molecules");
         chains->chains.molecules_of_bonds(molecules);
     });
 }
 
 int hol_chains_pairs(const hol_chains *chains, int64_t *pairs) {
-    return guarded(__func__, [&] {
-        need(chains, "chains");
+    return guarded(__func__, chains, [&] {
         need(chains->n_bonds(), pairs, "pairs");
         chains->chains.pairs(pairs);
     });
 }
 
 int hol_chains_lengths(const hol_chains *chains, double *lengths) {
-    return guarded(__func__, [&] {
-        need(chains, "chains");
+    return guarded(__func__, chains, [&] {
         need(chains->n_bonds(), lengths, "lengths");
         chains->chains.lengths(lengths);
     });
 }
 
 int hol_chains_masses(const hol_chains *chains, double *masses) {
-    return guarded(__func__, [&] {
-        need(chains, "chains");
+    return guarded(__func__, chains, [&] {
         need(chains->n_atoms(), masses, "masses");
         chains->chains.masses(masses);
     });
 }
 
 int hol_chains_images(const hol_chains *chains, int64_t *images) {
-    return guarded(__func__, [&] {
-        need(chains, "chains");
+    return guarded(__func__, chains, [&] {
         need(chains->n_bonds(), images, "images");
         chains->chains.images(images);
     });
 }
 
 int hol_chains_box(const hol_chains *chains, hol_which_box which, double *box) {
-    return guarded(__func__, [&] {
-        need(chains, "chains");
+    return guarded(__func__, chains, [&] {
         need(box, "box");
         const double *const given = holonomic::box_of(chains, which).given;
         std::copy(given, given + 9, box);
@@ -128,10 +118,7 @@ int hol_chains_box(const hol_chains *chains, hol_which_box which, double *box) {
 }
 
 int hol_chains_roles(const hol_chains *chains, int *roles, int64_t *removed) {
-    return guarded(__func__, [&] {
-        need(chains, "chains");
-        chains->chains.roles(roles, removed);
-    });
+    return guarded(__func__, chains, [&] { chains->chains.roles(roles, removed); });
 }
 
 int64_t hol_chains_n_of_shape(const hol_chains *chains, hol_shape shape) {
@@ -147,8 +134,7 @@ int64_t hol_chains_degrees_of_freedom(const hol_chains *chains, int dimensions) 
 int64_t hol_chains_memory(const hol_chains *chains) { return chains ? chains->chains.memory() : 0; }
 
 int hol_chains_adjustment(const hol_chains *chains, double *largest, int64_t *bond) {
-    return guarded(__func__, [&] {
-        need(chains, "chains");
+    return guarded(__func__, chains, [&] {
         need(largest, "largest");
         const holonomic::Chains::Adjustment &found = chains->chains.adjustment();
         *largest = found.largest;
@@ -157,16 +143,14 @@ int hol_chains_adjustment(const hol_chains *chains, double *largest, int64_t *bo
 }
 
 int hol_chains_held_sites(const hol_chains *chains, unsigned char *held) {
-    return guarded(__func__, [&] {
-        need(chains, "chains");
+    return guarded(__func__, chains, [&] {
         need(chains->n_atoms(), held, "held");
         chains->chains.held_sites(held);
     });
 }
 
 int hol_chains_implied(const hol_chains *chains, unsigned char *implied) {
-    return guarded(__func__, [&] {
-        need(chains, "chains");
+    return guarded(__func__, chains, [&] {
         need(implied, "implied");
         std::fill(implied, implied + chains->chains.n_bonds(), static_cast<unsigned char>(0));
         for (const std::int64_t bond : chains->chains.implied()) implied[bond] = 1;

@@ -16,7 +16,6 @@ namespace {
 template <class In, class Out>
 void run(const hol_chains *chains, const In *r, hol_which_box box, const double *lambda, double *tension, Out *g,
          hol_mode mode, double *bond_virial, double *virial) {
-    need(chains, "chains");
     need(chains->n_atoms(), r, "r");
     need(chains->n_bonds(), lambda, "lambda");
     const AtomArray ar = array_of(chains->n_atoms(), r, "r"), ag = array_of(chains->n_atoms(), g, "g");
@@ -29,10 +28,10 @@ void run(const hol_chains *chains, const In *r, hol_which_box box, const double 
 
 int hol_reactions(const hol_chains *chains, const double *r, hol_which_box box, const double *lambda, double *tension,
                   double *g, hol_mode mode, double *bond_virial, double *virial) {
-    return guarded(__func__, [&] { run(chains, r, box, lambda, tension, g, mode, bond_virial, virial); });
+    return guarded(__func__, chains, [&] { run(chains, r, box, lambda, tension, g, mode, bond_virial, virial); });
 }
 
 int hol_reactions_view(const hol_chains *chains, const hol_const_view *r, hol_which_box box, const double *lambda,
                        double *tension, const hol_view *g, hol_mode mode, double *bond_virial, double *virial) {
-    return guarded(__func__, [&] { run(chains, r, box, lambda, tension, g, mode, bond_virial, virial); });
+    return guarded(__func__, chains, [&] { run(chains, r, box, lambda, tension, g, mode, bond_virial, virial); });
 }

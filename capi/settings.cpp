@@ -27,8 +27,7 @@ int hol_chains_max_iterations(const hol_chains *chains) { return chains ? chains
 int64_t hol_chains_memory_limit(const hol_chains *chains) { return chains ? chains->chains.memory_limit : 0; }
 
 int hol_chains_box_rate(const hol_chains *chains, double *L) {
-    return guarded(__func__, [&] {
-        need(chains, "chains");
+    return guarded(__func__, chains, [&] {
         need(L, "L");
         const holonomic::BoxRate *const rate = chains->chains.box_rate();
         for (int k = 0; k < 9; ++k) L[k] = rate ? rate->L[k] : 0;
@@ -36,16 +35,14 @@ int hol_chains_box_rate(const hol_chains *chains, double *L) {
 }
 
 int hol_chains_active(const hol_chains *chains, unsigned char *active) {
-    return guarded(__func__, [&] {
-        need(chains, "chains");
+    return guarded(__func__, chains, [&] {
         need(chains->chains.n_molecules(), active, "active");
         chains->chains.active(active);
     });
 }
 
 int hol_chains_labels(const hol_chains *chains, int64_t *atoms, int64_t *molecules) {
-    return guarded(__func__, [&] {
-        need(chains, "chains");
+    return guarded(__func__, chains, [&] {
         const holonomic::Chains &all = chains->chains;
         for (std::int64_t a = 0; atoms && a < all.n_atoms(); ++a) atoms[a] = all.labels().number_of_atom(a, all.base);
         for (std::int64_t m = 0; molecules && m < all.n_molecules(); ++m)

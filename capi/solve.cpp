@@ -15,7 +15,6 @@ namespace {
 template <class In, class Out>
 void run(const hol_chains *chains, const In *r, const double *rhs, double *lambda, Out *g, hol_mode mode,
          double *virial) {
-    need(chains, "chains");
     need(chains->n_atoms(), r, "r");
     need(chains->n_bonds(), rhs, "rhs");
     const AtomArray ar = array_of(chains->n_atoms(), r, "r"), ag = array_of(chains->n_atoms(), g, "g");
@@ -28,10 +27,10 @@ void run(const hol_chains *chains, const In *r, const double *rhs, double *lambd
 
 int hol_solve(const hol_chains *chains, const double *r, const double *rhs, double *lambda, double *g, hol_mode mode,
               double *virial) {
-    return guarded(__func__, [&] { run(chains, r, rhs, lambda, g, mode, virial); });
+    return guarded(__func__, chains, [&] { run(chains, r, rhs, lambda, g, mode, virial); });
 }
 
 int hol_solve_view(const hol_chains *chains, const hol_const_view *r, const double *rhs, double *lambda,
                    const hol_view *g, hol_mode mode, double *virial) {
-    return guarded(__func__, [&] { run(chains, r, rhs, lambda, g, mode, virial); });
+    return guarded(__func__, chains, [&] { run(chains, r, rhs, lambda, g, mode, virial); });
 }

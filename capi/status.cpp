@@ -29,6 +29,8 @@ int remember(const char *function, const Error &error) noexcept {
     return static_cast<int>(error.status);
 }
 
+void throw_null(const char *name) { throw make_error(Status::null, "%s is NULL", name); }
+
 }  // namespace holonomic
 
 #define HOL_TEXT(x) #x

@@ -13,7 +13,6 @@ namespace {
 template <class In, class Out>
 __attribute__((always_inline)) inline void project(const hol_chains *chains, const In *r, Out *v, double *lambda,
                                                    double *virial) {
-    need(chains, "chains");
     need(chains->n_atoms(), r, "r");
     need(chains->n_atoms(), v, "v");
     holonomic::VelocitiesCall call;
@@ -28,10 +27,10 @@ __attribute__((always_inline)) inline void project(const hol_chains *chains, con
 }  // namespace
 
 int hol_project_velocities(const hol_chains *chains, const double *r, double *v, double *lambda, double *virial) {
-    return guarded(__func__, [&] { project(chains, r, v, lambda, virial); });
+    return guarded(__func__, chains, [&] { project(chains, r, v, lambda, virial); });
 }
 
 int hol_project_velocities_view(const hol_chains *chains, const hol_const_view *r, const hol_view *v, double *lambda,
                                 double *virial) {
-    return guarded(__func__, [&] { project(chains, r, v, lambda, virial); });
+    return guarded(__func__, chains, [&] { project(chains, r, v, lambda, virial); });
 }

@@ -13,7 +13,6 @@ namespace {
 // Of packed doubles, or of views.
 template <class In>
 void measure(const hol_chains *chains, const In *r, const In *v, hol_worst *worst) {
-    need(chains, "chains");
     need(chains->n_atoms(), r, "r");
     need(worst, "worst");
     const AtomArray ar = array_of(chains->n_atoms(), r, "r"), av = array_of(chains->n_atoms(), v, "v");
@@ -27,9 +26,9 @@ void measure(const hol_chains *chains, const In *r, const In *v, hol_worst *wors
 }  // namespace
 
 int hol_violation(const hol_chains *chains, const double *r, const double *v, hol_worst *worst) {
-    return guarded(__func__, [&] { measure(chains, r, v, worst); });
+    return guarded(__func__, chains, [&] { measure(chains, r, v, worst); });
 }
 
 int hol_violation_view(const hol_chains *chains, const hol_const_view *r, const hol_const_view *v, hol_worst *worst) {
-    return guarded(__func__, [&] { measure(chains, r, v, worst); });
+    return guarded(__func__, chains, [&] { measure(chains, r, v, worst); });
 }
