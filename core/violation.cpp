@@ -2,9 +2,9 @@
 
 #include <cmath>
 
+#include "core/caller/box.hpp"
 #include "core/caller/packed_array.hpp"
 #include "core/kernels/tally.hpp"
-#include "core/residuals.hpp"
 #include "core/rigid/parts.hpp"
 #include "core/rigid/verbs.hpp"
 #include "core/run/diagnose.hpp"
@@ -14,7 +14,7 @@ namespace holonomic {
 namespace {
 
 void violation_of_bonds(const Chains &chains, const AtomArray &r, const AtomArray &v, Worst *worst) {
-    const BoxRate *const of_box = v.x ? chains.box_rate() : nullptr;
+    const BoxRate *const of_box = chains.box_rate();
     Worst found{0, -1, -1, 0, -1, -1};
     Tally tally = empty_tally();
     for (std::int64_t chain = 0; chain < chains.n_chains(); ++chain) {
@@ -34,10 +34,12 @@ void violation_of_bonds(const Chains &chains, const AtomArray &r, const AtomArra
             }
             read_atom(r, m.atom(m.j(k)), r1);
             if (v.x) read_atom(v, m.atom(m.j(k)), v1);
+            const double a = m.length(k);
             double d[3];
             bond_vector(chains.box, r0, r1, d);
-            const Residual left = residual_of(d, v0, v1, m.length(k), of_box);
-            const double length = std::fabs(left.length), rate = std::fabs(left.rate);
+            const double length = std::fabs(d[0] * d[0] + d[1] * d[1] + d[2] * d[2] - a * a) / (a * a);
+            const double rate = std::fabs((d[0] * (v1[0] - v0[0]) + d[1] * (v1[1] - v0[1]) + d[2] * (v1[2] - v0[2])) +
+                                          (of_box && v.x ? stretching(*of_box, d) : 0));
             finite = finite && std::isfinite(length) && std::isfinite(rate);
             if (found.length_molecule < 0 || length > found.length) {
                 found.length = length;
