@@ -12,7 +12,7 @@ using holonomic::FactorsSolve;
 using holonomic::guarded;
 using holonomic::make_error;
 using holonomic::need;
-using holonomic::sides_at_once;
+using holonomic::rhs_at_once;
 using holonomic::Status;
 
 struct hol_factors {
@@ -32,9 +32,9 @@ void solve(const hol_factors *factors, std::int64_t n_rhs, const double *rhs, do
         throw make_error(Status::value, "n_rhs is %lld; it must be at least 0", static_cast<long long>(n_rhs));
     const std::int64_t n_bonds = factors->n_bonds();
     need(n_rhs == 0 ? 0 : n_bonds, rhs, "rhs");
-    FactorsSolve what[sides_at_once];
-    for (std::int64_t first = 0; first < n_rhs; first += sides_at_once) {
-        const int n = static_cast<int>(std::min<std::int64_t>(sides_at_once, n_rhs - first));
+    FactorsSolve what[rhs_at_once];
+    for (std::int64_t first = 0; first < n_rhs; first += rhs_at_once) {
+        const int n = static_cast<int>(std::min<std::int64_t>(rhs_at_once, n_rhs - first));
         for (int i = 0; i < n; ++i) {
             const std::int64_t k = first + i;
             what[i].rhs = rhs + k * n_bonds;

@@ -67,11 +67,12 @@ void Sorter::add(const Molecule &m) {
     for (std::int64_t i = 0; i < m.n_atoms; ++i) atoms.push_back(m.atom(i));
     std::sort(atoms.begin(), atoms.end());
     atoms.erase(std::unique(atoms.begin(), atoms.end()), atoms.end());
-    const auto place_of = [&](std::int64_t atom) {
+    const auto number_of = [&](std::int64_t atom) {
         return static_cast<int>(std::lower_bound(atoms.begin(), atoms.end(), atom) - atoms.begin());
     };
     Pairs ends;
-    for (std::int64_t k = 0; k < m.n_bonds; ++k) ends.emplace_back(place_of(m.atom(m.i(k))), place_of(m.atom(m.j(k))));
+    for (std::int64_t k = 0; k < m.n_bonds; ++k)
+        ends.emplace_back(number_of(m.atom(m.i(k))), number_of(m.atom(m.j(k))));
     const Arrangement *const found = arrangement(static_cast<int>(atoms.size()), ends);
     if (!found) {
         sorted_.left.push_back(m.number);

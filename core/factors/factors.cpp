@@ -166,7 +166,7 @@ void Factors::solve_packed(const FactorsSolve *what, int n, const double *rhs, d
     unsigned char *const left = static_cast<unsigned char *>(thread_memory(Keep::factors, n * n_molecules + 1));
     if (!left) throw std::bad_alloc();
     std::memset(left, 0, at(n * n_molecules));
-    KeptCall call[sides_at_once];
+    KeptCall call[rhs_at_once];
     for (int k = 0; k < n; ++k)
         call[k] = {what[k].v,   what[k].f,         what[k].g, rhs ? rhs : what[k].rhs, what[k].lambda, what[k].tension,
                    what[k].add, virial != nullptr, &kept_,    left + k * n_molecules};
@@ -202,7 +202,7 @@ void Factors::forces(const FactorsSolve &what, double *virial) const {
     need_update();
     if (!has_rate_) return solve_one(what, nullptr, virial);
     const std::int64_t bytes = chains_.n_bonds() * static_cast<std::int64_t>(sizeof(double));
-    double *const rhs = static_cast<double *>(thread_memory(Keep::sides_of_factors, bytes));
+    double *const rhs = static_cast<double *>(thread_memory(Keep::rhs_of_factors, bytes));
     if (!rhs && bytes > 0) throw std::bad_alloc();
     right_hand_sides(chains_, box_, L_, positions(), what.v, what.f, rhs);
     solve_one(what, rhs, virial);

@@ -20,7 +20,7 @@ struct FactorsSolve {
 };
 
 // So many right-hand sides go through the molecules together.
-constexpr int sides_at_once = 16;
+constexpr int rhs_at_once = 16;
 
 // Molecules whose factors are not kept are left to the ordinary verbs: those of shapes that kernels keep none of, and
 // those that plain products do not answer for.
@@ -37,7 +37,7 @@ public:
 
     // Throw Error: of Status::state if there has been no update since the set was changed. virial [9] or null.
     void forces(const FactorsSolve &what, double *virial) const;
-    // n right-hand sides, at most sides_at_once; virial [n][9] or null.
+    // n right-hand sides, at most rhs_at_once; virial [n][9] or null.
     void solve(const FactorsSolve *what, int n, double *virial) const;
 
     const Chains &chains() const { return chains_; }

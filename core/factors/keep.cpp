@@ -30,7 +30,7 @@ struct KeptWork : Work {
             most = std::max(most, k.kept.scratch_bytes(*plan.elimination_plans[at(s)]));
         return most;
     }
-    static bool is_for_sides_alone(const MoleculeUnit &unit) {
+    static bool is_for_rhs_alone(const MoleculeUnit &unit) {
         return list_of_kept(*unit.elimination) && unit.elimination->way.forces != Way::sparse_ldl;
     }
     bool is_left(const MoleculeUnit &unit) const {
@@ -49,7 +49,7 @@ struct KeepWork final : KeptWork {
     void unit(const MoleculeUnit &unit, int, double *scratch, Tally &tally) const override {
         if (is_left(unit)) return;
         k.kept.keep_molecules(call, unit, scratch, tally);
-        for (std::int64_t i = 0; is_for_sides_alone(unit) && i < unit.count; ++i) {
+        for (std::int64_t i = 0; is_for_rhs_alone(unit) && i < unit.count; ++i) {
             unsigned char &mark = left[lane_of(unit, i).molecule];
             if (!mark) mark = left_of_forces;
         }
@@ -83,7 +83,7 @@ struct KeptSolveWork final : KeptWork {
         for_each_call(where, [&](const KeptCall &c) { kernels(unit).kept.solve_chains(c, unit, scratch, tally); });
     }
     void unit(const MoleculeUnit &unit, int where, double *scratch, Tally &tally) const override {
-        if (!k.kept.is_kept(*unit.elimination) || (!calls->rhs && is_for_sides_alone(unit))) return;
+        if (!k.kept.is_kept(*unit.elimination) || (!calls->rhs && is_for_rhs_alone(unit))) return;
         k.kept.solve_molecules(n_calls == 1 ? &variants[where] : calls, n_calls, unit, scratch, tally);
     }
     void long_chain(const Lane &lane, int where, const Team &, double *store, Tally &tally) const override {

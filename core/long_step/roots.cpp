@@ -95,7 +95,7 @@ void StepBonds::make_rows() {
             for (const std::int64_t atom : {m_.i(k), m_.j(k)})
                 for (const std::int64_t other : {m_.i(l), m_.j(l)})
                     if (atom == other)
-                        coupling_[place(k, l)] += ((atom == m_.i(k)) == (other == m_.i(l)) ? 1 : -1) * m_.w(atom);
+                        coupling_[entry(k, l)] += ((atom == m_.i(k)) == (other == m_.i(l)) ? 1 : -1) * m_.w(atom);
 }
 
 // By Cholesky's factors of the symmetric part, which exist or not.
@@ -105,13 +105,13 @@ bool StepBonds::is_certified(const std::vector<double> &tau) const {
     std::vector<double> s(coupling_);
     for (std::int64_t k = 0; k < m_.n_bonds; ++k)
         for (std::int64_t l = first_[at(k)]; l <= k; ++l) {
-            double &sum = s[place(k, l)];
+            double &sum = s[entry(k, l)];
             sum *= 0.5 * (dot(D[at(k)], b_[at(l)]) + dot(D[at(l)], b_[at(k)]));
             const double least = least_pivot * sum;
             for (std::int64_t i = std::max(first_[at(k)], first_[at(l)]); i < l; ++i)
-                sum -= s[place(k, i)] * s[place(l, i)];
+                sum -= s[entry(k, i)] * s[entry(l, i)];
             if (l == k && !(sum > least)) return false;
-            sum = l == k ? std::sqrt(sum) : sum / s[place(l, l)];
+            sum = l == k ? std::sqrt(sum) : sum / s[entry(l, l)];
         }
     return true;
 }
@@ -122,20 +122,20 @@ void StepBonds::solve(const std::vector<Vector> &D, std::vector<double> &x, Fact
     low = up = coupling_;
     for (std::int64_t k = 0; k < m_.n_bonds; ++k) {
         for (std::int64_t l = first_[at(k)]; l <= k; ++l) {
-            double &of_row = low[place(k, l)], &of_column = up[place(k, l)];
+            double &of_row = low[entry(k, l)], &of_column = up[entry(k, l)];
             of_row *= dot(D[at(k)], b_[at(l)]);
             of_column *= dot(D[at(l)], b_[at(k)]);
             for (std::int64_t i = std::max(first_[at(k)], first_[at(l)]); i < l; ++i) {
-                of_row -= low[place(k, i)] * up[place(l, i)];
-                of_column -= low[place(l, i)] * up[place(k, i)];
+                of_row -= low[entry(k, i)] * up[entry(l, i)];
+                of_column -= low[entry(l, i)] * up[entry(k, i)];
             }
-            if (l < k) of_row /= up[place(l, l)];
+            if (l < k) of_row /= up[entry(l, l)];
         }
-        for (std::int64_t l = first_[at(k)]; l < k; ++l) x[at(k)] -= low[place(k, l)] * x[at(l)];
+        for (std::int64_t l = first_[at(k)]; l < k; ++l) x[at(k)] -= low[entry(k, l)] * x[at(l)];
     }
     for (std::int64_t k = m_.n_bonds; k-- > 0;) {
-        x[at(k)] /= up[place(k, k)];
-        for (std::int64_t l = first_[at(k)]; l < k; ++l) x[at(l)] -= up[place(k, l)] * x[at(k)];
+        x[at(k)] /= up[entry(k, k)];
+        for (std::int64_t l = first_[at(k)]; l < k; ++l) x[at(l)] -= up[entry(k, l)] * x[at(k)];
     }
 }
 

@@ -43,7 +43,7 @@ private:
     std::vector<Vector> moved(const std::vector<double> &tau, double part) const;  // bonds at this part of the path
     void make_rows();
     bool has_rows() const { return !coupling_.empty(); }
-    std::size_t place(std::int64_t k, std::int64_t l) const {
+    std::size_t entry(std::int64_t k, std::int64_t l) const {
         const std::size_t row = static_cast<std::size_t>(k);
         return static_cast<std::size_t>(start_[row] + l - first_[row]);
     }

@@ -16,12 +16,12 @@ struct LdlPlan;      // core/plan/sparse_ldl.hpp
 struct PathPlan;     // core/plan/paths.hpp
 struct NetworkPlan;  // core/plan/network.hpp
 
-// Atoms and bonds are renumbered. The *slot* of an atom: first the atoms of the trees, each after its children, then
-// the root of a tree, or the atoms of the core. In molecules that may go in lanes the slots of the children of all
-// atoms of trees follow each other: child[i] = i. In larger ones those of all that hangs from an atom do. The *place*
-// of a bond: a bond of a tree has the slot of its lower atom, the one away from the root; the bonds of the core follow
-// in the order of their elimination. So slot s < n_tree has its bond to its parent at place s, and there are no bonds
-// but n_tree + n_core.
+// Atoms and bonds are renumbered. The *index* of an atom: first the atoms of the trees, each after its children, then
+// the root of a tree, or the atoms of the core. In molecules that may go in lanes the indices of the children of all
+// atoms of trees follow each other: child[i] = i. In larger ones those of all that hangs from an atom do. The index of
+// a bond: a bond of a tree has the index of its lower atom, the one away from the root; the bonds of the core follow in
+// the order of their elimination. The bond from atom s < n_tree to its parent has index s, and there are no bonds but
+// n_tree + n_core.
 //
 // A core is what is left when atoms with one bond are stripped until there are none; a tree has none. All its atoms are
 // movable, because fixed atoms are leaves; only a network keeps these, too.
@@ -39,7 +39,7 @@ struct EliminationPlan {
     int32_t n_atoms, n_bonds;
     int32_t n_tree;        // bonds of trees
     int32_t n_core;        // bonds of the core
-    int32_t n_core_atoms;  // 0 for a tree, whose root has slot n_tree
+    int32_t n_core_atoms;  // 0 for a tree, whose root has index n_tree
     int32_t max_children;
     int32_t max_joint;  // children of an atom that are eliminated as one matrix of as many rows
 
@@ -48,22 +48,22 @@ struct EliminationPlan {
     const uint8_t *fixed;  // [n_atoms] by local atom
     int32_t star_centre;   // the local atom at which all bonds of a star meet; or -1
 
-    const int32_t *atom_of;   // [n_atoms] local atom of a slot
-    const int32_t *slot_of;   // [n_atoms] and back
-    const int32_t *bond_of;   // [n_bonds] local bond of a place
-    const int32_t *place_of;  // [n_bonds] and back, of junctions of paths alone
+    const int32_t *atom_of;        // [n_atoms] local atom of an index
+    const int32_t *index_of;       // [n_atoms] and back
+    const int32_t *bond_of;        // [n_bonds] local bond of an index
+    const int32_t *bond_index_of;  // [n_bonds] and back, of junctions of paths alone
 
-    // Trees: the bond vector at place s points from slot parent[s] to slot s, away from the root or the core.
-    const int32_t *parent;       // [n_tree] slot
-    const int32_t *child_start;  // [n_atoms + 1] the children of slot s are child[child_start[s] ..]: slots, ascending
+    // Trees: the bond vector at bond index s points from index parent[s] to index s, away from the root or the core.
+    const int32_t *parent;       // [n_tree] index
+    const int32_t *child_start;  // [n_atoms + 1] those of index s begin at child[child_start[s]], ascending
     const int32_t *child;        // [n_tree]
-    const int32_t *pair_start;   // [n_atoms + 1] sums of values_of_joint(): places for a joint's multipliers
+    const int32_t *pair_start;   // [n_atoms + 1] sums of values_of_joint(): where a joint's multipliers stand
     int32_t n_pairs;
 
-    // The core: bond p, at place n_tree + p, points from slot from[p] to slot to[p]. In a ring or triangle bond p joins
-    // the core's atoms p and p + 1, the last one to atom 0, and all point that way round.
+    // The core: bond p, at bond index n_tree + p, points from index from[p] to index to[p]. In a ring or triangle bond
+    // p joins the core's atoms p and p + 1, the last one to atom 0, and all point that way round.
     const int32_t *from, *to;  // [n_core]
-    // The bonds that meet at core atom c, in slot n_tree + c.
+    // The bonds that meet at core atom c, at index n_tree + c.
     const int32_t *meet_start;  // [n_core_atoms + 1]
     const int32_t *meet;        // [2 n_core]
 
@@ -74,17 +74,17 @@ struct EliminationPlan {
     const int32_t *row;
 
     // Atoms of a large tree with children, where most can be worked on W at a time: within a run none depends on
-    // another, and all have the same number of children, 4 standing for more. Slots [p slots_of_tile, (p + 1)
-    // slots_of_tile) are tile p; atoms whose children, and theirs, are all in the same tile stand in its runs, the
+    // another, and all have the same number of children, 4 standing for more. Indices [p indices_of_tile, (p + 1)
+    // indices_of_tile) are tile p; atoms whose children, and theirs, are all in the same tile stand in its runs, the
     // others in those of tile n_tiles, the top, which comes last. No tiles: the tree is small, or its atoms don't
     // fill lanes.
     struct AtomRun {
-        int32_t first, count, children;  // slots slot[first] ..
+        int32_t first, count, children;  // indices index[first] ..
         int32_t level;                   // how many atoms of the tile or the top must come before
     };
     struct Runs {
         const AtomRun *run;
-        const int32_t *slot;
+        const int32_t *index;
         const int32_t *tile_start;  // [n_tiles + 2] runs of each tile, then of the top
     };
     Runs runs;
@@ -102,25 +102,25 @@ struct EliminationPlan {
 
     // An arm: a path between two atoms of a large tree of which most is such paths, whose inner atoms have one child
     // each. Its atoms and its bonds have consecutive numbers, so that it can be worked on as a chain is, without
-    // looking at the other arms. Its slots and places are consecutive in any case.
+    // looking at the other arms. Indices of its atoms and bonds are consecutive in any case.
     struct Arm {
-        int32_t bottom;  // slot of its lowest atom: the places of its bonds are bottom, bottom + 1 .., upwards
+        int32_t bottom;  // index of its lowest atom: the indices of its bonds are bottom, bottom + 1 .., upwards
         int32_t n_bonds;
         int32_t first_atom, first_bond;                       // the first of its local atoms and bonds
         bool ascending;                                       // upwards
         int32_t inner_before;                                 // bonds but one of all arms before it
-        int32_t top() const { return bottom + n_bonds - 1; }  // the place of its highest bond
+        int32_t top() const { return bottom + n_bonds - 1; }  // the index of its highest bond
     };
     // What is between arms: atoms that are no arm's inner ones, and bonds that are not in an arm's segments - those of
     // the chain that the arm is without its last bond.
     struct Stretch {
-        int32_t first, end;              // slots
-        int32_t first_place, end_place;  // and places
-        int32_t arm;                     // that goes on behind these slots; the last stretch has none
+        int32_t first, end;              // indices
+        int32_t first_index, end_index;  // and bond indices
+        int32_t arm;                     // that goes on behind these indices; the last stretch has none
     };
     const Arm *arm;
     int32_t n_arms;              // 0: they are not worth it
-    const Stretch *stretch;      // [n_arms + 1] in the order of their slots
+    const Stretch *stretch;      // [n_arms + 1] in the order of their indices
     const int32_t *share_start;  // [n_shares + 1] arms that one thread works on at a time
     int32_t n_shares;
 

@@ -48,7 +48,7 @@ struct FrontPlan {
     const int32_t *to_parent;    // their rows in the front of which this one is a half
     const int32_t *node;         // of leaves
     const int32_t *own_row;      // [n_unknowns] the row of an unknown in the leaf of its node
-    const int32_t *foreign_row;  // of the places in NetworkPlan::foreign, likewise
+    const int32_t *foreign_row;  // of the entries of NetworkPlan::foreign, likewise
     const int32_t *partner_row;  // [n_unknowns] in the leaf of the unknown's node, where that couples the two; or -1
     int32_t n_hubs;
     const int32_t *hub;     // nodes

@@ -13,15 +13,15 @@ namespace holonomic {
 // knows nothing of the others while it is worked on:
 // - its atoms are its own, those that no tile before it has, and ghosts, which are copies of others' atoms;
 // - its bonds are its own, and extra ones, which are copies of later bonds at the atoms of these;
-// - what it gives to columns and entries of later tiles it gives to *sides* of its own, from which they fetch it.
-// Numbers of atoms, bonds and masses count from the tile's first one. Arrays over bonds and entries are padded with
+// - what it gives to columns and entries of later tiles it gives to *contributions* of its own, from which they fetch
+// it. Numbers of atoms, bonds and masses count from the tile's first one. Arrays over bonds and entries are padded with
 // inert ones to multiples of four.
 struct LdlPlan {
     int32_t n_atoms, n_bonds;
     int32_t n_sites;                              // atoms of all tiles, ghosts too
     int32_t n_rows;                               // bonds of all tiles, extra ones too
-    int32_t n_columns;                            // bonds, then sides
-    int32_t n_entries;                            // then sides
+    int32_t n_columns;                            // bonds, then contributions
+    int32_t n_entries;                            // then contributions
     int32_t most_sites, most_rows, most_columns;  // of a tile
 
     static constexpr int32_t columns_of_tile = 32768;
@@ -47,10 +47,10 @@ struct LdlPlan {
     const Subtree *subtree;  // [n_subtrees + 1]
     int32_t n_subtrees;      // 0: all is the separator
 
-    const int32_t *atom_of;   // [n_sites] local atom
-    const int32_t *home;      // [n_sites] where it is its tile's own
-    const int32_t *place_of;  // [n_atoms] the site that is its home
-    const int32_t *bond_of;   // [n_bonds] local bond of a column; inert ones have bond 0
+    const int32_t *atom_of;  // [n_sites] local atom
+    const int32_t *home;     // [n_sites] where it is its tile's own
+    const int32_t *site_of;  // [n_atoms] the site that is its home
+    const int32_t *bond_of;  // [n_bonds] local bond of a column; inert ones have bond 0
     // Bond k points from one atom to another. Four times their numbers, which saves a shift where rows are read.
     const int32_t *from, *to;  // [n_rows]
     // Off-diagonal entries of the factor, column by column: rows ascending, all > k in column k. The columns of a run
@@ -59,7 +59,7 @@ struct LdlPlan {
         int32_t columns, entries;
     };
     const ColumnRun *run;
-    const int32_t *row;  // [n_entries] columns or sides
+    const int32_t *row;  // [n_entries] columns or contributions
     // What an entry starts from, before fill: w d.d' with four times the number of its row and column, and the place of
     // the inverse mass of the atom that both share among -w_0, w_0, -w_1, .. , 0, by sign.
     const int32_t *row_4, *column_4, *mass;
@@ -69,7 +69,7 @@ struct LdlPlan {
 
     // Columns and entries that tiles before have given something to, and where it is.
     struct Late {
-        int32_t number, side;
+        int32_t number, contribution;
     };
     const Late *late, *late_entry;
     // Ghosts of later tiles, with bonds of these: what pulls them pulls the tile's own atom.

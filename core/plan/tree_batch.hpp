@@ -39,7 +39,7 @@ struct TreeBatch {
     const uint16_t *held;  // [n_places] bits: the lanes that have a bond here
     int32_t n_tiles;       // of one large tree, else 0
     const int32_t *tile_start;  // [n_tiles + 2] steps of each tile, then of the top with the root
-    const int32_t *element;     // by slot: of the bond above
+    const int32_t *element;     // by index: of the bond above
     int32_t n_rows() const { return n_places + 2 + n_tiles; }
     const EliminationPlan *const *elimination;  // [n_trees]
 

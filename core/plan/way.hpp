@@ -34,7 +34,7 @@ constexpr int32_t largest_in_lanes = 2048;
 constexpr int32_t largest_graph_in_lanes = 256;
 // The most children of an atom of a ring with trees: chemical ones have no more. With others it is a graph.
 constexpr int32_t most_on_ring = 2;
-constexpr int32_t slots_of_tile = 2048;  // so many bonds at work fill a second-level cache
+constexpr int32_t indices_of_tile = 2048;  // so many bonds at work fill a second-level cache
 
 // Bonds of an arm: what is done once an arm is little beside what is done for its bonds, and these stay in cache. All
 // but one are a multiple of arm_step, so that segments in as many lanes are equally long.

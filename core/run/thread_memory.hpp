@@ -18,7 +18,7 @@ enum class Keep {
     outcomes,
     rescaled,
     factors,
-    sides_of_factors,
+    rhs_of_factors,
     arrays_of_factors,
     last
 };

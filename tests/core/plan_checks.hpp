@@ -43,16 +43,17 @@ inline std::unique_ptr<const EliminationPlan> plan_of_bonds(const Bonds &bonds, 
 inline void numbers_are_permutations(const EliminationPlan &s)
 {
     for (int i = 0; i < s.n_atoms; ++i)
-        require(s.slot_of[s.atom_of[i]] == i && s.atom_of[s.slot_of[i]] == i, "slots are no permutation");
+        require(s.index_of[s.atom_of[i]] == i && s.atom_of[s.index_of[i]] == i, "indices are no permutation");
     std::vector<int> placed(static_cast<std::size_t>(s.n_bonds));
     for (int p = 0; p < s.n_bonds; ++p)
         require(placed[static_cast<std::size_t>(s.bond_of[p])]++ == 0, "places are no permutation");
     require(s.n_tree + s.n_core == s.n_bonds, "bonds are missing");
 }
 
-inline void joins(const EliminationPlan &s, int place, int slot, int other, const char *what)
+inline void joins(const EliminationPlan &s, int bond_index, int index, int other, const char *what)
 {
-    const int i = s.atom_i[s.bond_of[place]], j = s.atom_j[s.bond_of[place]], a = s.atom_of[slot], b = s.atom_of[other];
+    const int i = s.atom_i[s.bond_of[bond_index]], j = s.atom_j[s.bond_of[bond_index]], a = s.atom_of[index],
+              b = s.atom_of[other];
     require((i == a && j == b) || (i == b && j == a), what);
 }
 
@@ -61,7 +62,7 @@ inline void trees_are_in_order(const EliminationPlan &s)
     int children = 0;
     for (int k = 0; k < s.n_tree; ++k) {
         require(s.parent[k] > k, "a parent before its child");
-        joins(s, k, k, s.parent[k], "the bond of a place joins other atoms");
+        joins(s, k, k, s.parent[k], "the bond of a bond_index joins other atoms");
     }
     for (int i = 0; i < s.n_atoms; ++i) {
         const int n = s.child_start[i + 1] - s.child_start[i];
@@ -73,7 +74,7 @@ inline void trees_are_in_order(const EliminationPlan &s)
             require(s.parent[s.child[c]] == i, "a child of another atom");
         if (n == 0 || (i >= s.n_tree && s.type != EliminationPlan::tree)) continue;
         if (s.n_bonds > holonomic::largest_in_lanes)
-            require(s.child[s.child_start[i + 1] - 1] == i - 1, "the last child's slot is not the one before");
+            require(s.child[s.child_start[i + 1] - 1] == i - 1, "the last child's index is not the one before");
         for (int c = s.child_start[i]; c < s.child_start[i + 1] && s.n_bonds <= holonomic::largest_in_lanes; ++c)
             require(s.child[c] == c, "children of other atoms between those of an atom");
     }
@@ -158,12 +159,12 @@ inline void list_solves(const holonomic::LdlPlan &s, std::mt19937 &random)
     }
 }
 
-// Branches of a list: what the columns of one give goes to columns of the same tile, to sides that one tile alone has,
-// and from there to later tiles of the same branch or to the separator.
+// Branches of a list: what the columns of one give goes to columns of the same tile, to contributions that one tile
+// alone has, and from there to later tiles of the same branch or to the separator.
 inline void branches_need_nothing_of_others(const holonomic::LdlPlan &s, int least, double largest)
 {
     require(s.n_subtrees >= least, "too few branches");
-    std::vector<int> branch_of, tile_of_side(static_cast<std::size_t>(s.n_columns), -1);
+    std::vector<int> branch_of, tile_of_contribution(static_cast<std::size_t>(s.n_columns), -1);
     for (int b = 0; b <= s.n_subtrees; ++b) {
         require(s.subtree[b].first == static_cast<int>(branch_of.size()), "tiles of two branches, or of none");
         branch_of.resize(static_cast<std::size_t>(s.subtree[b].end), b);
@@ -179,12 +180,12 @@ inline void branches_need_nothing_of_others(const holonomic::LdlPlan &s, int lea
                 require(s.row[e] >= tile.first && s.row[e] < tile.end, "a row in another tile");
                 continue;
             }
-            int &owner = tile_of_side[static_cast<std::size_t>(s.row[e])];
-            require(owner < 0 || owner == t, "two tiles have one side");
+            int &owner = tile_of_contribution[static_cast<std::size_t>(s.row[e])];
+            require(owner < 0 || owner == t, "two tiles have one contribution");
             owner = t;
         }
         for (int i = tile.first_late; i < tile.end_late; ++i) {
-            const int from = tile_of_side[static_cast<std::size_t>(s.late[i].side)],
+            const int from = tile_of_contribution[static_cast<std::size_t>(s.late[i].contribution)],
                       giver = branch_of[static_cast<std::size_t>(from)];
             require(s.late[i].number >= tile.first && s.late[i].number < tile.end, "a late column of another tile");
             require(from < t && (giver == branch_of[static_cast<std::size_t>(t)] ||

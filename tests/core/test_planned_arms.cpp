@@ -9,34 +9,35 @@ using namespace plan_checks;
 namespace
 {
 
-/** Every slot and place of a tree is in a stretch between arms or inside of one arm, whose atoms are consecutive. */
+/** Every index and bond_index of a tree is in a stretch between arms or inside of one arm, whose atoms are consecutive.
+ */
 void arms_and_stretches_hold_everything(const EliminationPlan &s)
 {
-    std::vector<int> slots(static_cast<std::size_t>(s.n_tree), 0), places(slots);
+    std::vector<int> indices(static_cast<std::size_t>(s.n_tree), 0), places(indices);
     const auto count = [](std::vector<int> &of, int first, int end) {
         for (int i = first; i < end; ++i) ++of[static_cast<std::size_t>(i)];
     };
     for (int i = 0; i <= s.n_arms; ++i) {
-        count(slots, s.stretch[i].first, s.stretch[i].end);
-        count(places, s.stretch[i].first_place, s.stretch[i].end_place);
+        count(indices, s.stretch[i].first, s.stretch[i].end);
+        count(places, s.stretch[i].first_index, s.stretch[i].end_index);
     }
     for (int a = 0; a < s.n_arms; ++a) {
         const EliminationPlan::Arm &arm = s.arm[a];
-        count(slots, arm.bottom + 1, arm.top() + 1);
+        count(indices, arm.bottom + 1, arm.top() + 1);
         const int first = arm.ascending ? arm.bottom : arm.bottom + 1;
         count(places, first, first + arm.n_bonds - 1);
         for (int k = 0; k < arm.n_bonds; ++k) {
-            const int place = arm.ascending ? arm.bottom + k : arm.top() - k;
-            const int lower = s.atom_of[arm.ascending ? place : s.parent[place]];
-            const int upper = s.atom_of[arm.ascending ? s.parent[place] : place];
-            require(s.bond_of[place] == arm.first_bond + k, "an arm's bonds are not consecutive");
+            const int bond_index = arm.ascending ? arm.bottom + k : arm.top() - k;
+            const int lower = s.atom_of[arm.ascending ? bond_index : s.parent[bond_index]];
+            const int upper = s.atom_of[arm.ascending ? s.parent[bond_index] : bond_index];
+            require(s.bond_of[bond_index] == arm.first_bond + k, "an arm's bonds are not consecutive");
             require(lower == arm.first_atom + k && upper == lower + 1, "an arm's atoms are not consecutive");
-            require(k == 0 || s.parent[arm.bottom + k - 1] == arm.bottom + k, "an arm's slots are not consecutive");
+            require(k == 0 || s.parent[arm.bottom + k - 1] == arm.bottom + k, "an arm's indices are not consecutive");
         }
     }
     for (int i = 0; i < s.n_tree; ++i) {
-        require(slots[static_cast<std::size_t>(i)] == 1, "a slot is not in one stretch or arm");
-        require(places[static_cast<std::size_t>(i)] == 1, "a place is not in one stretch or arm");
+        require(indices[static_cast<std::size_t>(i)] == 1, "an index is not in one stretch or arm");
+        require(places[static_cast<std::size_t>(i)] == 1, "a bond_index is not in one stretch or arm");
     }
 }
 

@@ -28,13 +28,18 @@ run/apart             run/staging
 [Rr]emainder          effective inverse mass
 pieces?.of.paths?     section
 pieces?.of.(a.)?(large.)?trees?  tile
+[Ss]lots?             index (in the order of elimination)
+place_of              bond_index_of, site_of
+(first|end)_place     first_index, end_index
+(clear|add|give)_sides  contributions
+size_of_side          size of the right-hand side
 '
 status=0
 while read -r word now; do
     [ -n "$word" ] || continue
     # Whole words, and parts of identifiers.
     found=$(grep -rnE --include='*.cpp' --include='*.hpp' --include='*.md' --include='*.cmake' "(^|[^A-Za-z])$word([^a-z]|\$)" \
-        core docs/architecture.md docs/stability.md docs/theory.md docs/performance.md docs/development/*.md | grep -v _knot_mask | head -n 5)
+        core docs/architecture.md docs/stability.md docs/theory.md docs/performance.md docs/development/*.md | grep -v -e _knot_mask -e '^core/device/.*[Ss]lot' | head -n 5)
     [ -z "$found" ] || { echo "$found"; echo "^ the word is: $now"; status=1; }
 done <<<"$words"
 [ $status -ne 0 ] || echo "no old word"

@@ -33,15 +33,15 @@ void add_arms(const EliminationPlan &s, std::vector<atoms> &all)
     all.push_back(segments);
 }
 
-/** Atoms of the top, and those about which slots go on in another tile. */
+/** Atoms of the top, and those about which indices go on in another tile. */
 void add_tiles_of_tree(const EliminationPlan &s, std::vector<atoms> &all)
 {
     atoms top, cut;
     const EliminationPlan::Runs &runs = s.runs;
     for (int i = runs.tile_start[s.n_tiles]; i < runs.tile_start[s.n_tiles + 1]; ++i)
-        for (int n = 0; n < runs.run[i].count; ++n) top.push_back(s.atom_of[runs.slot[runs.run[i].first + n]]);
+        for (int n = 0; n < runs.run[i].count; ++n) top.push_back(s.atom_of[runs.index[runs.run[i].first + n]]);
     for (int p = 1; p < s.n_tiles; ++p)
-        for (const int step : {-1, 0}) cut.push_back(s.atom_of[p * holonomic::slots_of_tile + step]);
+        for (const int step : {-1, 0}) cut.push_back(s.atom_of[p * holonomic::indices_of_tile + step]);
     all.push_back(top);
     all.push_back(cut);
 }

@@ -44,8 +44,8 @@ struct Sweep {
     vec size = {};
 
     // b(): the right-hand side; asked for when it is needed, so that it waits in no register.
-    template <class Side>
-    inline HOL_FORCED void step(long k, const Side &b, bool starts_group, bool ragged) {
+    template <class Rhs>
+    inline HOL_FORCED void step(long k, const Rhs &b, bool starts_group, bool ragged) {
         const vec w = w_at<uniform>(block, k), w1 = w_at<uniform>(block, k + 1);
         const vec3 d1 = s.D[k];
         const vec q1 = dot(d1, d1);

@@ -17,7 +17,7 @@ struct ChainPlan {
     int64_t table_start[most + 2];
     double w[most + 1], length[most];
     int32_t atom_i[most], atom_j[most], arm_start[most + 2], arms[2 * most], parent[most + 1], hanging[most],
-        place[most], column_start[1];
+        column_of[most], column_start[1];
 
     void set(const Lane &chain) {
         const int32_t n = static_cast<int32_t>(chain.n_bonds);
@@ -36,11 +36,11 @@ struct ChainPlan {
         for (int32_t k = 0; k < n; ++k) {
             atom_i[k] = hanging[k] = k;
             atom_j[k] = k + 1;
-            place[k] = -1;
+            column_of[k] = -1;
             length[k] = chain.length ? chain.length[k] : chain.length_uniform;
         }
         plan = {n + 1, n,       atom_i, atom_j,  arm_start, arms,         table_start, n > 1 ? 2 : 1, parent,
-                n,     hanging, 0,      nullptr, place,     column_start, nullptr,     nullptr};
+                n,     hanging, 0,      nullptr, column_of, column_start, nullptr,     nullptr};
         lane = {chain.first_atom, chain.atoms, nullptr, w, length, chain.first_bond, chain.chain};
     }
 };

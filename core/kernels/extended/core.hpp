@@ -7,7 +7,7 @@
 
 namespace holonomic::HOL_ISA::extended {
 
-// Rows and columns are places in the order of elimination.
+// Rows and columns are positions in the order of elimination.
 struct Core {
     const ExtendedPlan *plan;
     bool mixed;
@@ -59,7 +59,7 @@ HOL_NOINLINE void clear(const Core &x) {
 
 // Adds to the element of bonds k (row) and l (column) of the matrix, and `size` to what it is made of.
 HOL_NOINLINE void add_element(const Core &x, int32_t k, int32_t l, const Wide &value, double size) {
-    const int32_t row = x.plan->place[k], column = x.plan->place[l];
+    const int32_t row = x.plan->column_of[k], column = x.plan->column_of[l];
     const int64_t e = row > column ? element(*x.plan, row, column) : element(*x.plan, column, row);
     Wide &sum = (row > column ? x.lower : x.upper)[e];
     sum += value;

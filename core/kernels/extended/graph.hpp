@@ -35,7 +35,7 @@ HOL_NOINLINE Graph take_graph(const ExtendedPlan &plan, const Wide3 *D, const Wi
 }
 
 HOL_INLINE bool is_child(const ExtendedPlan &plan, int32_t i, int32_t k) {
-    return plan.place[k] < 0 && plan.parent[i] != k;
+    return plan.column_of[k] < 0 && plan.parent[i] != k;
 }
 
 HOL_NOINLINE bool eliminate_children(const ExtendedPlan &plan, Joint &x, int32_t i, int target) {
@@ -69,16 +69,16 @@ HOL_NOINLINE bool reduce_many(const ScaledMolecule &m, const Graph &g, Joint &x,
 HOL_NOINLINE void add_to_core(const ScaledMolecule &m, const Graph &g, const Joint &x, int32_t i, const Wide *L) {
     const int32_t *const arms = m.plan.arms + m.plan.arm_start[i];
     for (int e = 0; e < x.n; ++e) {
-        if (m.plan.place[arms[e]] < 0) continue;
+        if (m.plan.column_of[arms[e]] < 0) continue;
         for (int f = 0; f < x.n; ++f) {
-            if (m.plan.place[arms[f]] < 0) continue;
+            if (m.plan.column_of[arms[f]] < 0) continue;
             const Wide value = offered(x, e, f);
             const double size = x.loss.largest * abs(value.hi);
             if (e != f) {
                 add_element(g.core, arms[e], arms[f], value, size);
                 continue;
             }
-            const int32_t at = m.plan.place[arms[e]];
+            const int32_t at = m.plan.column_of[arms[e]];
             g.core.diagonal[at] += value;
             g.core.size_of_diagonal[at] += size;
             g.core.full[at] += x.w * dot(x.D[e], x.B[e]);

@@ -111,8 +111,8 @@ HOL_NOINLINE void find_neighbours(const ScaledMolecule &m, const Graph &g, const
             for (int b = 0; b < n; ++b) {
                 if (arms[a] == plan.parent[i] && a == b)
                     H[a * n + b] = x.diagonal[arms[a]];
-                else if (plan.place[arms[a]] >= 0 && plan.place[arms[b]] >= 0)
-                    H[a * n + b] = core_element(plan, x, plan.place[arms[a]], plan.place[arms[b]]);
+                else if (plan.column_of[arms[a]] >= 0 && plan.column_of[arms[b]] >= 0)
+                    H[a * n + b] = core_element(plan, x, plan.column_of[arms[a]], plan.column_of[arms[b]]);
             }
         hand_down(m, g, x, i);
         return true;

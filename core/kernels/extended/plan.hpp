@@ -18,7 +18,7 @@ struct ExtendedPlan {
     const int32_t *hanging;           // [n_hanging] the stripped atoms, children before parents
     int32_t n_core;                   //
     const int32_t *core;              // [n_core] bonds in their order of elimination
-    const int32_t *place;             // [n_bonds] the bond's place in it, -1 for hanging bonds
+    const int32_t *column_of;         // [n_bonds] its column, -1 for hanging bonds
     const int32_t *column_start;      // [n_core+1] columns of the factor, below the diagonal
     const int32_t *rows;              // [column_start[n_core]] ascending in each column
     const int32_t *ring;              // [n_bonds] in their order round the ring; nullptr if it is no bare ring

@@ -48,11 +48,12 @@ HOL_NOINLINE ExtendedPlan plan_of(const EliminationPlan &s, ByteArena &memory) {
     const bool round = s.type == EliminationPlan::triangle || s.type == EliminationPlan::ring;
     plan.ring = round && s.n_tree == 0 ? s.bond_of : nullptr;
     list_arms(plan, memory);
-    int32_t *const parent = memory.take<int32_t>(s.n_atoms), *const place = memory.take<int32_t>(s.n_bonds);
-    for (int32_t slot = 0; slot < s.n_atoms; ++slot) parent[s.atom_of[slot]] = slot < s.n_tree ? s.bond_of[slot] : -1;
-    for (int32_t p = 0; p < s.n_bonds; ++p) place[s.bond_of[p]] = p < s.n_tree ? -1 : p - s.n_tree;
+    int32_t *const parent = memory.take<int32_t>(s.n_atoms), *const column_of = memory.take<int32_t>(s.n_bonds);
+    for (int32_t index = 0; index < s.n_atoms; ++index)
+        parent[s.atom_of[index]] = index < s.n_tree ? s.bond_of[index] : -1;
+    for (int32_t p = 0; p < s.n_bonds; ++p) column_of[s.bond_of[p]] = p < s.n_tree ? -1 : p - s.n_tree;
     plan.parent = parent;
-    plan.place = place;
+    plan.column_of = column_of;
     return plan;
 }
 

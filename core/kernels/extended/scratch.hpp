@@ -27,12 +27,12 @@ inline int64_t extended_plan_bytes(const EliminationPlan &s) {
 inline int64_t extended_scratch_bytes(const EliminationPlan &s, int64_t &more_of_metric) {
     int64_t most_arms = 0, table = 0;
     more_of_metric = 0;
-    for (int32_t slot = 0; slot < s.n_atoms; ++slot) {
-        const int32_t c = slot - s.n_tree;
+    for (int32_t index = 0; index < s.n_atoms; ++index) {
+        const int32_t c = index - s.n_tree;
         const int64_t above = c < 0           ? 1
                               : s.n_core == 0 ? 0
                                               : s.meet_start[c + 1] - s.meet_start[c],
-                      arms = s.child_start[slot + 1] - s.child_start[slot] + above;
+                      arms = s.child_start[index + 1] - s.child_start[index] + above;
         most_arms = arms > most_arms ? arms : most_arms;
         table += table_values(arms);
         if (arms > most_in_table && s.n_core > 0) more_of_metric += 32 * arms * arms;

@@ -98,8 +98,8 @@ HOL_INLINE void differences(const Block &block, const Packed &x, long k0, vec3 *
 // Right-hand sides of the W bonds that are chunk number c, from bond `from` on: products of what stands in memory are
 // transposed alone, as load_chunks() does.
 template <bool weigh, bool has_v, bool has_f>
-HOL_INLINE void sides_of_chunk(const Block &block, const vec *d, const RowsOfLanes &of_v, const RowsOfLanes &of_f,
-                               long from, vec *B) {
+HOL_INLINE void rhs_of_chunk(const Block &block, const vec *d, const RowsOfLanes &of_v, const RowsOfLanes &of_f,
+                             long from, vec *B) {
     constexpr int terms = (has_v ? velocity_squared : 0) | (has_f ? force_difference : 0);
     vec p[3 * W];
     HOL_UNROLL
@@ -128,8 +128,8 @@ HOL_INLINE void sides_of_chunk(const Block &block, const vec *d, const RowsOfLan
 // Right-hand sides of all bonds into t, and the sweep up on the way. Returns the lanes in which nothing can overflow on
 // the way down, as Sweep::calm().
 template <bool weigh, bool has_v, bool has_f>
-HOL_NOINLINE mask substitute_sides(const Block &block, const ChainSystem &s, const double *kept, const Packed &v,
-                                   const Packed &f) {
+HOL_NOINLINE mask substitute_rhs(const Block &block, const ChainSystem &s, const double *kept, const Packed &v,
+                                 const Packed &f) {
     constexpr int terms = (has_v ? velocity_squared : 0) | (has_f ? force_difference : 0);
     const RowsOfLanes of_v(has_v ? v : f), of_f(has_f ? f : v);
     vec y = {}, size = {};
@@ -137,7 +137,7 @@ HOL_NOINLINE mask substitute_sides(const Block &block, const ChainSystem &s, con
         vec B[W];
         const long from = chunk_at(block, k0), end = k0 + W < block.n ? k0 + W : block.n;
         if (__builtin_expect(from >= 0, 1)) {
-            sides_of_chunk<weigh, has_v, has_f>(block, rows(kept, block.n, k0 / W), of_v, of_f, from, B);
+            rhs_of_chunk<weigh, has_v, has_f>(block, rows(kept, block.n, k0 / W), of_v, of_f, from, B);
         } else {
             vec3 dv[W] = {}, df[W] = {};
             if (has_v) differences<false>(block, v, k0, dv);
@@ -263,8 +263,8 @@ static void solve_block(const Block &block, const Lane *lane, const KeptCall &ca
         solve_at_once(
             block, s, call, from,
             [&](auto has_v, auto has_f) {
-                return block.uniform_w ? substitute_sides<false, has_v, has_f>(block, s, from, v, f)
-                                       : substitute_sides<true, has_v, has_f>(block, s, from, v, f);
+                return block.uniform_w ? substitute_rhs<false, has_v, has_f>(block, s, from, v, f)
+                                       : substitute_rhs<true, has_v, has_f>(block, s, from, v, f);
             },
             [&](auto add) { substitute_and_store<add ? add_ : write_>(block, s, g, call.lambda, half); }))
         return;
@@ -275,8 +275,8 @@ static void solve_block(const Block &block, const Lane *lane, const KeptCall &ca
     else
         choose(
             [&](auto has_v, auto has_f) {
-                block.uniform_w ? substitute_sides<false, has_v, has_f>(block, s, from, v, f)
-                                : substitute_sides<true, has_v, has_f>(block, s, from, v, f);
+                block.uniform_w ? substitute_rhs<false, has_v, has_f>(block, s, from, v, f)
+                                : substitute_rhs<true, has_v, has_f>(block, s, from, v, f);
             },
             call.v.x != nullptr, call.f.x != nullptr);
     backward(0, block.n, s.t, s.L);

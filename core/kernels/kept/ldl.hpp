@@ -96,15 +96,14 @@ private:
     __attribute__((noinline)) void solve(const KeptLdl<V> &kept, const KeptCall &call, const MoleculeLane *lane,
                                          int used, double *scratch) const {
         Memory<V> memory = {scratch};
-        const RightHandSides sides = right_hand_sides_of(call);
-        LdlLinear<V> x(s, lane, used, true, true, unit.team, *call.kept->box, call.kept->r, sides.in, sides.terms,
-                       memory);
+        const RightHandSides rhs = right_hand_sides_of(call);
+        LdlLinear<V> x(s, lane, used, true, true, unit.team, *call.kept->box, call.kept->r, rhs.in, rhs.terms, memory);
         kept.lend_to(x);
         const LdlKeptSolve<V, V> pairs = kept.solve(Pairs<V>{x.t, x.back});
         pairs.start();
         x.up([&](const LdlLinear<V> &own, const Subtree &subtree) HOL_FORCED {
             for_tiles_up(own.s, subtree, [&](const Tile &tile) HOL_FORCED {
-                load_sides(own, tile);
+                load_rhs(own, tile);
                 pairs.up(tile);
             });
         });
@@ -122,7 +121,7 @@ private:
     }
     // Right-hand sides of a tile; their low words, in `back`, are none.
     template <class V>
-    static __attribute__((noinline)) void load_sides(const LdlLinear<V> &x, const Tile &tile) {
+    static __attribute__((noinline)) void load_rhs(const LdlLinear<V> &x, const Tile &tile) {
         if (x.terms & given) {
             for (int32_t k = tile.first; k < tile.end; ++k) {
                 x.t[k] = x.given_to(tile, k);

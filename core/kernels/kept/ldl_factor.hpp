@@ -43,8 +43,8 @@ struct LdlKeptFactor {
         read_masses(all.lane, all.s, all.w);
         clear_entries(all.s, all.lower);
         clear_entries(all.s, low_lower);
-        clear_sides(all.s, all.per_pivot);
-        clear_sides(all.s, low_pivot);
+        clear_contributions(all.s, all.per_pivot);
+        clear_contributions(all.s, low_pivot);
         all.up([&](const LdlLinear<V> &in_thread, const Subtree &subtree) HOL_FORCED {
             const LdlKeptFactor own(in_thread, low_bonds, low_lower, low_pivot);
             unsigned proven = bits(in_thread.in_use()), firm = proven;
@@ -114,9 +114,9 @@ private:
     __attribute__((noinline)) void eliminate(const Tile &tile) const {
         const LdlKeptFactor y = *this;
         for (int32_t i = tile.first_late; i < tile.end_late; ++i)
-            y.pivot.add(s.late[i].number, y.pivot[s.late[i].side]);
+            y.pivot.add(s.late[i].number, y.pivot[s.late[i].contribution]);
         for (int32_t i = tile.first_late_entry; i < tile.end_late_entry; ++i)
-            y.lower.add(s.late_entry[i].number, y.lower[s.late_entry[i].side]);
+            y.lower.add(s.late_entry[i].number, y.lower[s.late_entry[i].contribution]);
         const int32_t *update = s.update + tile.first_update;
         for_columns_up(s, tile, [&](int32_t k, int32_t first, int32_t n) HOL_FORCED {
             const int32_t *const row = y.s.row + first;

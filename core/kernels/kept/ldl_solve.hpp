@@ -32,12 +32,13 @@ struct LdlKeptSolve {
 
     // What tiles leave for others is nothing so far.
     void start() const {
-        clear_sides(s, t.hi);
-        clear_sides(s, t.lo);
+        clear_contributions(s, t.hi);
+        clear_contributions(s, t.lo);
     }
     __attribute__((noinline)) void up(const Tile &tile) const {
         const LdlKeptSolve y = *this;
-        for (int32_t i = tile.first_late; i < tile.end_late; ++i) y.t.add(y.s.late[i].number, y.t[y.s.late[i].side]);
+        for (int32_t i = tile.first_late; i < tile.end_late; ++i)
+            y.t.add(y.s.late[i].number, y.t[y.s.late[i].contribution]);
         for_columns_up(y.s, tile, [&](int32_t k, int32_t first, int32_t n) HOL_FORCED {
             const int32_t *const row = y.s.row + first;
             const Pair<V> of_column = tidied(y.t[k]);
@@ -56,8 +57,8 @@ struct LdlKeptSolve {
                 of_column = subtract_pairs(of_column, multiply_pairs(spread<V>(y.lower[first + e]), y.t[row[e]]));
             y.t.put(k, tidied(of_column));
         });
-        give_sides(y.s, tile, y.t.hi);
-        give_sides(y.s, tile, y.t.lo);
+        give_contributions(y.s, tile, y.t.hi);
+        give_contributions(y.s, tile, y.t.lo);
     }
 
     // The lanes in which all multipliers are numbers, and none is so small beside what pulls the atoms of its bond that

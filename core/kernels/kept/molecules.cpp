@@ -104,7 +104,7 @@ private:
             virial.count(good, 1, tally);
         }
         if (call.g.x)
-            write_vectors(call.g, at, s.slot_of, s.n_atoms, Slots<V>(pull),
+            write_vectors(call.g, at, s.index_of, s.n_atoms, ByIndex<V>(pull),
                           Written<V>{good, nullptr, nullptr, call.add});
     }
     template <class V>
@@ -112,7 +112,7 @@ private:
         if (call.rhs) return up_given(x, call.rhs, at);
         const auto read = [&](const AtomArray &array) {
             Vector3<V> *const to = memory.vectors(array.x ? s.n_atoms : 0);
-            if (array.x) read_vectors(array, at, s.slot_of, s.n_atoms, Slots<V>(to));
+            if (array.x) read_vectors(array, at, s.index_of, s.n_atoms, ByIndex<V>(to));
             return to;
         };
         const Vector3<V> *const v = read(call.v), *const f = read(call.f);
@@ -123,14 +123,14 @@ private:
     static inline __attribute__((noinline)) void up_forces(const KeptTreesSolve<V> &x, const Vector3<V> *v,
                                                            const Vector3<V> *f) {
         const KeptTreesSolve<V> y = x;
-        y.up([&](int32_t place, int32_t from, int32_t to) HOL_FORCED {
+        y.up([&](int32_t bond_index, int32_t from, int32_t to) HOL_FORCED {
             V b = {};
             if (has_v) {
                 const Vector3<V> dv = v[to] - v[from];
                 b = dot(dv, dv);
             }
             const V *const w = y.kept.w;
-            return has_f ? Loader<V>::with_pull(y.kept.bond[place].d, w[from], f[from], w[to], f[to], b) : b;
+            return has_f ? Loader<V>::with_pull(y.kept.bond[bond_index].d, w[from], f[from], w[to], f[to], b) : b;
         });
     }
     template <class V>
@@ -141,10 +141,10 @@ private:
         const double *rhs[Width<V>::lanes];
         for (int i = 0; i < Width<V>::lanes; ++i) rhs[i] = given + at.bond[i];
         const V half = Width<V>::all(0.5);
-        y.up([&](int32_t place, int32_t, int32_t) HOL_FORCED {
+        y.up([&](int32_t bond_index, int32_t, int32_t) HOL_FORCED {
             V b = {};
             HOL_UNROLL
-            for (int i = 0; i < Width<V>::lanes; ++i) Width<V>::set(b, i, rhs[i][bond_of[place]]);
+            for (int i = 0; i < Width<V>::lanes; ++i) Width<V>::set(b, i, rhs[i][bond_of[bond_index]]);
             return half * b;
         });
     }

@@ -197,7 +197,7 @@ private:
         if (call.rhs)
             atoms.read_bonds(call.rhs, 0.5, y);
         else
-            find_star_sides(call.v, call.f, atoms, star, y);
+            find_star_rhs(call.v, call.f, atoms, star, y);
         return finish_star(outputs_of(call), atoms, star, y, Width<V>::of_bits(lanes), tally);
     }
 };

@@ -5,7 +5,7 @@
 
 namespace holonomic::HOL_ISA::graph {
 
-// What is kept of a bond at its place, as BondRow has it.
+// What is kept of a bond at its index, as BondRow has it.
 template <class V>
 struct KeptBond {
     Vector3<V> d;
@@ -55,10 +55,10 @@ struct KeptTrees {
             copy(z.ring.to_last, s.n_core, to_last);
             copy(z.ring.reach, 2 * static_cast<int64_t>(s.n_tree), reach);
         }
-        for (int32_t slot = 0; slot < s.n_tree; ++slot) {
-            const int32_t first = s.child_start[slot], end = s.child_start[slot + 1];
+        for (int32_t index = 0; index < s.n_tree; ++index) {
+            const int32_t first = s.child_start[index], end = s.child_start[index + 1];
             if (end - first <= most_decomposed) continue;
-            const Matrix3<V> B = kept_matrix(pair + s.pair_start[slot]);
+            const Matrix3<V> B = kept_matrix(pair + s.pair_start[index]);
             for (int32_t c = first; c < end; ++c) {
                 KeptBond<V> &row = bond[c];
                 row.alone = row.r * mul_add(-row.r, dot(row.d, B * row.d), Width<V>::all(1));

@@ -16,24 +16,24 @@ public:
           terms_(memory.values(solved.s.n_bonds)) {}
 
     // The lanes of `which` in which a bond is cancelling. shared: of an atom of the bond.
-    __attribute__((noinline)) unsigned cancelling(int32_t place, const V &shared, unsigned which) {
-        const BondRow<V> row = this->row(place);
+    __attribute__((noinline)) unsigned cancelling(int32_t bond_index, const V &shared, unsigned which) {
+        const BondRow<V> row = this->row(bond_index);
         V margin = Width<V>::all(1);
-        flag_cancelling_bond(x_, row, place, shared, which, margin);
+        flag_cancelling_bond(x_, row, bond_index, shared, which, margin);
         const unsigned rest = bits(less(margin, V{}));
         if (!rest) return 0;
-        const V scale = this->scale(place);
+        const V scale = this->scale(bond_index);
         return rest & bits(less(mul_add(scale, scale, left_of(row, shared)), V{}));
     }
-    BondRow<V> row(int32_t place) const {
-        const KeptBond<V> &bond = solved_.kept.bond[place];
-        return {bond.d, bond.q, solved_.value[place].own, solved_.value[place].t, bond.l, bond.r};
+    BondRow<V> row(int32_t bond_index) const {
+        const KeptBond<V> &bond = solved_.kept.bond[bond_index];
+        return {bond.d, bond.q, solved_.value[bond_index].own, solved_.value[bond_index].t, bond.l, bond.r};
     }
 
 private:
     V scale(int32_t of) {
         if (!knows_terms_) find_terms();
-        inverse_.up([&](int32_t place, int32_t, int32_t) HOL_FORCED { return Width<V>::all(place == of); });
+        inverse_.up([&](int32_t bond_index, int32_t, int32_t) HOL_FORCED { return Width<V>::all(bond_index == of); });
         inverse_.template down<false>(nullptr);
         V sum = {};
         for (int32_t k = 0; k < x_.s.n_bonds; ++k) sum = mul_add(abs(inverse_.value[k].t), terms_[k], sum);
@@ -59,13 +59,13 @@ HOL_NOINLINE unsigned look_again(const KeptTreesSolve<V> &of, const Molecules<V>
     KeptScales<V> scales(x, of, memory);
     unsigned left = bits(x.in_use());
     for (int32_t i = 0; i < n; ++i) {
-        const int32_t slot = of.flagged[i], k = of.children(slot), first = of.first_child(slot);
-        const bool of_ring = slot >= of.s.n_tree;
-        const V shared = of.shared_error(slot);
+        const int32_t index = of.flagged[i], k = of.children(index), first = of.first_child(index);
+        const bool of_ring = index >= of.s.n_tree;
+        const V shared = of.shared_error(index);
         for (int32_t a = of_ring ? -2 : -1; a < k; ++a) {
-            const int32_t place = a == -2 ? of.before(slot) : a == -1 ? slot : first + a;
-            const unsigned which = left & bits(less(left_of(scales.row(place), shared), V{}));
-            if (which) left &= ~scales.cancelling(place, shared, which);
+            const int32_t bond_index = a == -2 ? of.before(index) : a == -1 ? index : first + a;
+            const unsigned which = left & bits(less(left_of(scales.row(bond_index), shared), V{}));
+            if (which) left &= ~scales.cancelling(bond_index, shared, which);
         }
     }
     return left;

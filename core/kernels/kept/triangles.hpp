@@ -72,9 +72,9 @@ struct SolveTriangles : OneWay {
         for (int k = 0; k < 3; ++k) d[k] = {kept.d[3 * k], kept.d[3 * k + 1], kept.d[3 * k + 2]};
         V t[3], y[3];
         const Box no_box = {};
-        const TriangleCall sides = {call.g,      call.v,       call.f,   call.rhs,    call.g,
-                                    call.lambda, call.tension, call.add, call.virial, no_box};
-        triangle_sides<where>(sides, at, kind.masses, d, y);
+        const TriangleCall rhs = {call.g,      call.v,       call.f,   call.rhs,    call.g,
+                                  call.lambda, call.tension, call.add, call.virial, no_box};
+        triangle_rhs<where>(rhs, at, kind.masses, d, y);
         TriangleInverse<V>::solve(kept.inverse(), y, t);
         const unsigned of_kept = static_cast<unsigned>(kept.lanes[0]), others = ((1u << used) - 1) & ~of_kept,
                        good = bits(Width<V>::first(used) & finite(t[0] + (t[1] + t[2]))) & of_kept;

@@ -47,14 +47,14 @@ HOL_INLINE int worst_lane(unsigned which, const V &error, const MoleculeLane *la
 }
 
 // The worst bond of the molecules in `which`, in the order s.bond_of: of a molecule the one with the smallest number
-// among those. error_of(k): in all lanes. for_places(each) calls each(first, end) for places where it may stand.
-template <class V, class Order, class ErrorOf, class Places>
+// among those. error_of(k): in all lanes. for_indices(each) calls each(first, end) for indices where it may stand.
+template <class V, class Order, class ErrorOf, class Indices>
 HOL_INLINE void note_worst_bond(const Order &s, unsigned which, const V &error, const MoleculeLane *lane,
-                                const ErrorOf &error_of, const Places &for_places, Tally &tally) {
+                                const ErrorOf &error_of, const Indices &for_indices, Tally &tally) {
     const int worst = worst_lane(which, error, lane, tally);
     if (worst < 0) return;
     int32_t bond = s.n_bonds;
-    for_places([&](int32_t first, int32_t end) {
+    for_indices([&](int32_t first, int32_t end) {
         for (int32_t k = first; k < end; ++k)
             if (s.bond_of[k] < bond && Width<V>::get(error_of(k), worst) >= tally.worst) bond = s.bond_of[k];
     });

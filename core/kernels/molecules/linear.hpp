@@ -10,7 +10,7 @@ template <class V>
 struct TreeLinear {
     Molecules<V> x;
     RingLinear<V> ring;
-    Vector3<V> *r, *v, *f;  // [n_atoms] as they were read, by slot; those that there are terms of
+    Vector3<V> *r, *v, *f;  // [n_atoms] as they were read, by index; those that there are terms of
     Memory<V> working;      // of a joint of many bonds
 
     static constexpr int64_t bond_values = sizeof(BondRow<V>) / sizeof(V);
@@ -55,14 +55,14 @@ struct TreeLinear {
     void solve_for_rates() {
         const Molecules<V> &y = x;
         const Vector3<V> *const speed = v;
-        solve_again([&](int32_t place, int32_t from, int32_t to) HOL_FORCED {
-            BondRow<V> &row = y.row[place];
+        solve_again([&](int32_t bond_index, int32_t from, int32_t to) HOL_FORCED {
+            BondRow<V> &row = y.row[bond_index];
             row.t = dot(row.d, speed[to] - speed[from]);
             if (y.in.strain) row.t = row.t + stretching(y.in.strain, row.d);
         });
         down_and_pull<false>();
     }
-    // G of all atoms by slot, once all is solved.
+    // G of all atoms by index, once all is solved.
     Vector3<V> *pulls() const { return r; }
 
 private:
@@ -75,11 +75,11 @@ private:
 
     // Up, and back to the bonds at the root, or the ring and the bonds at its atoms. Right-hand sides are found on the
     // way.
-    template <class Side>
-    __attribute__((noinline)) void solve_again(const Side &side) {
+    template <class Rhs>
+    __attribute__((noinline)) void solve_again(const Rhs &rhs) {
         const Molecules<V> &y = x;
-        for (int32_t p = 0; p < x.s.n_core; ++p) side(x.s.n_tree + p, x.s.from[p], x.s.to[p]);
-        substitute_trees(x, working, [&](int32_t slot) HOL_FORCED { side(slot, y.s.parent[slot], slot); });
+        for (int32_t p = 0; p < x.s.n_core; ++p) rhs(x.s.n_tree + p, x.s.from[p], x.s.to[p]);
+        substitute_trees(x, working, [&](int32_t index) HOL_FORCED { rhs(index, y.s.parent[index], index); });
         if (x.s.type == EliminationPlan::ring)
             choose(
                 [&](auto bare) HOL_FORCED {

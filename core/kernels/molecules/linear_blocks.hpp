@@ -10,12 +10,12 @@
 
 namespace holonomic::HOL_ISA::graph {
 
-// v + w G of the atom in a slot.
+// v + w G of the atom at an index.
 template <class V>
 struct ProjectedVelocities {
     const Vector3<V> *v, *pull;
     const V *w;
-    HOL_FORCED Vector3<V> operator[](int32_t slot) const { return add_times(v[slot], w[slot], pull[slot]); }
+    HOL_FORCED Vector3<V> operator[](int32_t index) const { return add_times(v[index], w[index], pull[index]); }
 };
 
 // Trees and rings in lanes.
@@ -32,7 +32,7 @@ struct LinearBlock {
         graph::write_bonds<with_length>(z.x, factor, out, which);
     }
     HOL_FORCED void write_pulls(const AtomArray &g, bool add, unsigned which) const {
-        write_vectors(g, z.x.at, z.x.s.slot_of, z.x.s.n_atoms, Slots<V>(z.pulls()),
+        write_vectors(g, z.x.at, z.x.s.index_of, z.x.s.n_atoms, ByIndex<V>(z.pulls()),
                       Written<V>{which, nullptr, z.x.lane, add});
     }
     HOL_FORCED void write(const LinearOutputs &out, unsigned which, Tally &tally) const {
@@ -43,10 +43,10 @@ struct LinearBlock {
         write_all_but_atoms(*this, out, which, tally);
         const ProjectedVelocities<V> projected = {z.v, z.pulls(), z.x.w};
         if (twice) {
-            for (int32_t slot = 0; slot < z.x.s.n_atoms; ++slot) put(z.v[slot], projected[slot]);
+            for (int32_t index = 0; index < z.x.s.n_atoms; ++index) put(z.v[index], projected[index]);
             solve_for_rates(z);
         }
-        write_vectors(*out.g, z.x.at, z.x.s.slot_of, z.x.s.n_atoms, projected, Written<V>{which, nullptr, z.x.lane});
+        write_vectors(*out.g, z.x.at, z.x.s.index_of, z.x.s.n_atoms, projected, Written<V>{which, nullptr, z.x.lane});
     }
 };
 
@@ -70,9 +70,9 @@ struct LinearOfBlocks {
         }
         Memory<V> memory = {scratch};
         TreeLinear<V> z(elimination, lane, used, packed, call.box, call.r, memory);
-        const RightHandSides sides = right_hand_sides_of(call);
-        z.x.in = sides.in;
-        const LinearBlock<V> x = {z, sides.terms, masses_known};
+        const RightHandSides rhs = right_hand_sides_of(call);
+        z.x.in = rhs.in;
+        const LinearBlock<V> x = {z, rhs.terms, masses_known};
         const unsigned rest = solve_linear(call, x, tally, [&] { ahead.fetch(); });
         if (__builtin_expect(rest != 0, 0)) solve_flagged(call, elimination, lane, rest, memory.next, tally);
     }
@@ -83,17 +83,17 @@ private:
                                                 double *scratch) const {
         Memory<V> memory = {scratch};
         const LdlBlock<V> block = {elimination, lane, used, packed, masses_known, team, memory};
-        const RightHandSides sides = right_hand_sides_of(call);
-        const LdlLinear<V> list = block.linear(call.box, call.r, sides.in, sides.terms);
+        const RightHandSides rhs = right_hand_sides_of(call);
+        const LdlLinear<V> list = block.linear(call.box, call.r, rhs.in, rhs.terms);
         const LdlWay<V> x = {list};
         if (const unsigned rest = solve_linear(call, x, tally, [] {}))
             solve_flagged(call, elimination, lane, rest, memory.next, tally);
     }
     // Given right-hand sides have no use for arms.
     bool solve_armed(const MoleculeLane *lane, double *scratch) const {
-        const RightHandSides sides = right_hand_sides_of(call);
-        if (sides.terms == given) return false;
-        ArmedTree z(elimination, *lane, packed, call.box, call.r, sides.in, sides.terms, team, scratch);
+        const RightHandSides rhs = right_hand_sides_of(call);
+        if (rhs.terms == given) return false;
+        ArmedTree z(elimination, *lane, packed, call.box, call.r, rhs.in, rhs.terms, team, scratch);
         return solve_linear(call, z, tally, [] {}) == 0;
     }
 };

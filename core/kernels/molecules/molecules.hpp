@@ -10,7 +10,7 @@
 
 namespace holonomic::HOL_ISA::graph {
 
-// A bond at its place (core/plan/elimination.hpp).
+// A bond at its index (core/plan/elimination.hpp).
 template <class V>
 struct BondRow {
     Vector3<V> d;
@@ -37,8 +37,8 @@ struct Molecules {
     Atoms<V> at;
     const Box *box;
     const AtomArray *r;  // of the bond vectors, for what is computed anew
-    V *w;                // [n_atoms] by slot
-    BondRow<V> *row;     // [n_bonds] by place
+    V *w;                // [n_atoms] by index
+    BondRow<V> *row;     // [n_bonds] by bond index
     V *pair;             // [n_pairs] multipliers among the children of an atom
     V margin;            // negative where plain products do not do
     Inputs in;
@@ -67,24 +67,25 @@ HOL_INLINE void put(Vector3<V> &to, const Vector3<V> &a) {
     to.z = a.z;
 }
 
-// Inverse masses by slot.
+// Inverse masses by index.
 template <class V>
-HOL_INLINE void masses_by_slot(const EliminationPlan &s, const MoleculeLane *lane, V *w) {
-    for (int32_t slot = 0; slot < s.n_atoms; ++slot)
-        for (int i = 0; i < Width<V>::lanes; ++i) Width<V>::set(w[slot], i, lane[i].w[s.atom_of[slot]]);
+HOL_INLINE void masses_by_index(const EliminationPlan &s, const MoleculeLane *lane, V *w) {
+    for (int32_t index = 0; index < s.n_atoms; ++index)
+        for (int i = 0; i < Width<V>::lanes; ++i) Width<V>::set(w[index], i, lane[i].w[s.atom_of[index]]);
 }
 
-// Finds the slots at the two ends of a bond. It points from the first to the second.
-HOL_INLINE void ends_of(const EliminationPlan &s, int32_t place, int32_t &from, int32_t &to) {
-    from = place < s.n_tree ? s.parent[place] : s.from[place - s.n_tree];
-    to = place < s.n_tree ? place : s.to[place - s.n_tree];
+// Finds the indices at the two ends of a bond. It points from the first to the second.
+HOL_INLINE void ends_of(const EliminationPlan &s, int32_t bond_index, int32_t &from, int32_t &to) {
+    from = bond_index < s.n_tree ? s.parent[bond_index] : s.from[bond_index - s.n_tree];
+    to = bond_index < s.n_tree ? bond_index : s.to[bond_index - s.n_tree];
 }
 
 // Finds a bond vector of one lane, with the low word that the difference of the coordinates leaves.
 template <class V>
-HOL_INLINE void exact_bond(const Molecules<V> &x, int lane, int32_t place, Vector3<double> &d, Vector3<double> &lo) {
+HOL_INLINE void exact_bond(const Molecules<V> &x, int lane, int32_t bond_index, Vector3<double> &d,
+                           Vector3<double> &lo) {
     int32_t from, to;
-    ends_of(x.s, place, from, to);
+    ends_of(x.s, bond_index, from, to);
     Vector3<double> a, b;
     read_atom(*x.r, x.at.number(lane, x.s.atom_of[from]), &a.x);
     read_atom(*x.r, x.at.number(lane, x.s.atom_of[to]), &b.x);

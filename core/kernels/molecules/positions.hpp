@@ -27,12 +27,12 @@ HOL_INLINE V largest_of(const V &largest, const Vector3<V> &r) {
     return max(max(abs(r.x), abs(r.y)), max(abs(r.z), largest));
 }
 
-// Reads the reference positions and the new ones, by slot.
+// Reads the reference positions and the new ones, by index.
 template <class V>
 HOL_INLINE void read_positions(const EliminationPlan &s, const PositionsCall &call, const Atoms<V> &at,
-                               const Slots<V> ref, const Slots<V> now) {
-    read_vectors(call.r_ref, at, s.slot_of, s.n_atoms, ref);
-    read_vectors(call.r, at, s.slot_of, s.n_atoms, now);
+                               const ByIndex<V> ref, const ByIndex<V> now) {
+    read_vectors(call.r_ref, at, s.index_of, s.n_atoms, ref);
+    read_vectors(call.r, at, s.index_of, s.n_atoms, now);
 }
 
 // Bonds of the reference positions and of the new ones; returns the largest coordinate of the latter.
@@ -40,7 +40,7 @@ template <class V>
 HOL_NOINLINE V load_bonds(TreeNewton<V> &newton, const PositionsCall &call, const Atoms<V> &at) {
     const EliminationPlan &s = newton.x.s;
     const Vector3<V> *const r_ref = newton.x.r_ref, *const r = newton.x.r;
-    read_positions(s, call, at, Slots<V>(newton.x.r_ref), Slots<V>(newton.x.r));
+    read_positions(s, call, at, ByIndex<V>(newton.x.r_ref), ByIndex<V>(newton.x.r));
     V largest = {};
     typename TreeNewton<V>::Errors errors = {};
     const auto load = [&](int32_t k, int32_t from, int32_t to) HOL_FORCED {
@@ -52,7 +52,7 @@ HOL_NOINLINE V load_bonds(TreeNewton<V> &newton, const PositionsCall &call, cons
         largest = largest_of(largest, r[k]);
     }
     for (int32_t p = 0; p < s.n_core; ++p) load(s.n_tree + p, s.from[p], s.to[p]);
-    for (int32_t slot = s.n_tree; slot < s.n_atoms; ++slot) largest = largest_of(largest, r[slot]);
+    for (int32_t index = s.n_tree; index < s.n_atoms; ++index) largest = largest_of(largest, r[index]);
     newton.opening = errors.largest();
     return largest;
 }
@@ -60,7 +60,7 @@ HOL_NOINLINE V load_bonds(TreeNewton<V> &newton, const PositionsCall &call, cons
 template <class V>
 HOL_NOINLINE V load_bonds(RingNewton<V> &newton, const PositionsCall &call, const Atoms<V> &at) {
     NewtonRow<V> *const row = newton.x.row;
-    read_positions(newton.x.s, call, at, Slots<V>(row, &row->b.x), Slots<V>(row, &row->D.x));
+    read_positions(newton.x.s, call, at, ByIndex<V>(row, &row->b.x), ByIndex<V>(row, &row->D.x));
     const Vector3<V> first_ref = row[0].b, first = row[0].D;
     const int32_t n = newton.x.s.n_bonds;
     V largest = largest_of(V{}, first);
@@ -140,7 +140,7 @@ struct PositionsBlock : PositionWay<typename System::Value> {
         unsigned char any_fixed = 0;
         for (int32_t i = 0; i < s.n_atoms; ++i) any_fixed |= s.fixed[i];
         const unsigned char *const fixed = any_fixed ? s.fixed : nullptr;
-        move_vectors(call, at, s.slot_of, s.n_atoms, newton.displacements(),
+        move_vectors(call, at, s.index_of, s.n_atoms, newton.displacements(),
                      Written<V>{which, fixed, nullptr, false, 0, right});
     }
 };

@@ -7,25 +7,25 @@
 
 namespace holonomic::HOL_ISA::graph {
 
-// Returns G of the atom of a tree at a slot: t d of the bonds to its children, less t d of that to its parent.
-HOL_INLINE Vector3<double> pull_on(const Molecules<double> &x, int32_t slot) {
+// Returns G of the atom of a tree at an index: t d of the bonds to its children, less t d of that to its parent.
+HOL_INLINE Vector3<double> pull_on(const Molecules<double> &x, int32_t index) {
     const EliminationPlan &s = x.s;
 #if HOL_LANES >= 4 && defined(__AVX2__)
     quad g = {};  // rows begin with d, so x, y and z are done at once
-    for (int32_t c = s.child_start[slot]; c < s.child_start[slot + 1]; ++c) {
+    for (int32_t c = s.child_start[index]; c < s.child_start[index + 1]; ++c) {
         const BondRow<double> &row = x.row[s.child[c]];
         g = _mm256_fmadd_pd(_mm256_set1_pd(row.t), _mm256_loadu_pd(&row.d.x), g);
     }
-    if (slot < s.n_tree) {
-        const BondRow<double> &row = x.row[slot];
+    if (index < s.n_tree) {
+        const BondRow<double> &row = x.row[index];
         g = _mm256_fnmadd_pd(_mm256_set1_pd(row.t), _mm256_loadu_pd(&row.d.x), g);
     }
     return {g[0], g[1], g[2]};
 #else
     Vector3<double> g = {};
-    for (int32_t c = s.child_start[slot]; c < s.child_start[slot + 1]; ++c)
+    for (int32_t c = s.child_start[index]; c < s.child_start[index + 1]; ++c)
         g = add_times(g, x.row[s.child[c]].t, x.row[s.child[c]].d);
-    return slot < s.n_tree ? add_times(g, -x.row[slot].t, x.row[slot].d) : g;
+    return index < s.n_tree ? add_times(g, -x.row[index].t, x.row[index].d) : g;
 #endif
 }
 
@@ -36,36 +36,36 @@ struct LinearOutputs {
     bool add, virial;
 };
 
-// Writes value(slot) of the atoms of one molecule in these slots.
+// Writes value(index) of the atoms of one molecule in these indices.
 template <class Value>
-HOL_INLINE void write_slots(const Molecules<double> &x, const AtomArray &array, int32_t first, int32_t end,
-                            const Value &value) {
+HOL_INLINE void write_indices(const Molecules<double> &x, const AtomArray &array, int32_t first, int32_t end,
+                              const Value &value) {
     const unsigned char *const shared = x.lane[0].shared;
     if (x.at.layout == rows_in_order && !shared) {
         double *const base = reinterpret_cast<double *>(array.x) + 3 * x.at.first[0];
-        for (int32_t slot = end; slot-- > first;) {
-            if (slot >= first + rows_ahead) fetch_row<1>(array, 3 * (x.at.first[0] + x.s.atom_of[slot - rows_ahead]));
-            double *const p = base + 3 * static_cast<int64_t>(x.s.atom_of[slot]);
-            write_rows(&p, value(slot));
+        for (int32_t index = end; index-- > first;) {
+            if (index >= first + rows_ahead) fetch_row<1>(array, 3 * (x.at.first[0] + x.s.atom_of[index - rows_ahead]));
+            double *const p = base + 3 * static_cast<int64_t>(x.s.atom_of[index]);
+            write_rows(&p, value(index));
         }
         return;
     }
-    for (int32_t slot = end; slot-- > first;) {
-        const int32_t atom = x.s.atom_of[slot];
-        if (!(shared && shared[atom])) write(array, x.at, atom, value(slot), 1);
+    for (int32_t index = end; index-- > first;) {
+        const int32_t atom = x.s.atom_of[index];
+        if (!(shared && shared[atom])) write(array, x.at, atom, value(index), 1);
     }
 }
 
-// Puts G of the root's or the ring's atoms to pull[slot]; to that of their children what the bond above pulls.
+// Puts G of the root's or the ring's atoms to pull[index]; to that of their children what the bond above pulls.
 template <class V>
 HOL_INLINE void pull_top(const Molecules<V> &x, Vector3<V> *pull) {
     const EliminationPlan &s = x.s;
     if (s.type == EliminationPlan::ring) {
-        const auto of_bond = [&](int32_t place) HOL_FORCED { return x.row[place].t * x.row[place].d; };
+        const auto of_bond = [&](int32_t bond_index) HOL_FORCED { return x.row[bond_index].t * x.row[bond_index].d; };
         Vector3<V> before = of_bond(s.n_bonds - 1);
-        for (int32_t slot = s.n_tree; slot < s.n_atoms; ++slot) {
-            const Vector3<V> behind = of_bond(slot);
-            put(pull[slot], Vector3<V>{} + (behind - before));  // zeros as +0
+        for (int32_t index = s.n_tree; index < s.n_atoms; ++index) {
+            const Vector3<V> behind = of_bond(index);
+            put(pull[index], Vector3<V>{} + (behind - before));  // zeros as +0
             put(before, behind);
         }
     } else {
@@ -79,8 +79,8 @@ HOL_INLINE void pull_top(const Molecules<V> &x, Vector3<V> *pull) {
     }
 }
 
-// Writes value(place) of the bonds at these places to out[bond] of the lanes in `which`. To look whether four bonds
-// follow each other takes more instructions than it saves, in rings, too.
+// Writes value(bond_index) of the bonds at these indices to out[bond] of the lanes in `which`. To look whether four
+// bonds follow each other takes more instructions than it saves, in rings, too.
 template <class V, class Value>
 HOL_INLINE void write_values(const int32_t *bond_of, const int64_t *first_bond, double *out, unsigned which,
                              int32_t first, int32_t end, const Value &value) {
@@ -109,7 +109,7 @@ HOL_INLINE void write_values(const int32_t *bond_of, const MoleculeLane *lane, d
     write_values<V>(bond_of, first_bond, out, which, first, end, value);
 }
 
-// Writes factor t of the bonds at these places, zeros as +0. with_length: |d| is the factor.
+// Writes factor t of the bonds at these indices, zeros as +0. with_length: |d| is the factor.
 template <bool with_length, class V>
 HOL_INLINE void write_bonds(const Molecules<V> &x, double factor, double *out, unsigned which, int32_t first,
                             int32_t end) {

@@ -91,8 +91,8 @@ static void forces_block(const Block &block, const Lane *lane, const ForcesCall 
 
 // Bonds D[k] of W molecules and their right-hand sides t[k].
 template <bool uniform, bool boxed, class View, class Array>
-HOL_INLINE void load_sides(const Block &block, const Box &box, const View &view, const Array &r, const Array &v,
-                           const Array &f, vec3 *D, vec *t) {
+HOL_INLINE void load_rhs(const Block &block, const Box &box, const View &view, const Array &r, const Array &v,
+                         const Array &f, vec3 *D, vec *t) {
     constexpr int N = View::bonds;
     vec e[vectors_of<N>];
     vec3 dv[N] = {}, *const x = reinterpret_cast<vec3 *>(e);
@@ -133,7 +133,7 @@ static int64_t forces_of_molecules(const ForcesCall &call, const Unit &unit, con
         view.fetch_next(r);
         view.fetch_next(v);
         view.fetch_next(f);
-        load_sides<uniform, boxed>(block, call.box, view, r, v, f, D, t);
+        load_rhs<uniform, boxed>(block, call.box, view, r, v, f, D, t);
         const auto source = view.source(r, call.box);
         Sweep<uniform, false, decltype(view.source(r, call.box))> sweep{block, source, ChainSystem(D, t, L, nullptr)};
         HOL_UNROLL

@@ -52,10 +52,10 @@ static inline void leave_flagged(const Call &call, const TreeBatch &f, const Mol
 template <class Call>
 static inline void solve_batches(const Call &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
     const bool packed = are_packed(call);
-    const RightHandSides sides = right_hand_sides_of(call);
+    const RightHandSides rhs = right_hand_sides_of(call);
     NextMolecules ahead = next_of(call);
     for_each_batch(unit, scratch, ahead, [&](const TreeBatch &f, const MoleculeLane *lane, Memory<vec> memory) {
-        BatchLinear z(f, lane, packed, call.box, call.r, sides.in, sides.terms, memory);
+        BatchLinear z(f, lane, packed, call.box, call.r, rhs.in, rhs.terms, memory);
         unsigned rest;
         if (f.n_tiles > 0) {
             const LargeTree tree(z, unit.team, memory);

@@ -15,7 +15,7 @@ static inline unsigned good_lanes(TreeLinear<V> &z) {
 
 template <class V>
 static inline unsigned load_and_solve_lanes(TreeLinear<V> &z, int terms, bool masses_known) {
-    if (!masses_known) masses_by_slot(z.x.s, z.x.lane, z.x.w);
+    if (!masses_known) masses_by_index(z.x.s, z.x.lane, z.x.w);
     Loader<V>{z, terms}.load();
     z.factorize_and_solve();
     return good_lanes(z);

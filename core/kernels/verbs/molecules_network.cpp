@@ -17,8 +17,8 @@ int64_t network_bytes(const NetworkPlan &s) {
 template <class Call>
 static inline bool linear_network(const Call &call, const EliminationPlan &s, const MoleculeLane &lane, bool packed,
                                   const LongTeam *team, double *scratch, Tally &tally) {
-    const RightHandSides sides = right_hand_sides_of(call);
-    const NetLinear x(*s.network, lane, packed, team, call.box, call.r, sides.in, sides.terms, {scratch});
+    const RightHandSides rhs = right_hand_sides_of(call);
+    const NetLinear x(*s.network, lane, packed, team, call.box, call.r, rhs.in, rhs.terms, {scratch});
     if (solve_linear(call, x, tally, [] {})) return false;
     count_moved(tally, 0, x.rounds);
     return true;
@@ -49,8 +49,8 @@ bool solve_kept_network(const KeptCall &call, const EliminationPlan &s, const Mo
                         double *scratch, Tally &tally) {
     const KeptNetwork kept = {const_cast<double *>(call.kept->block[lane.molecule])};
     if (!kept.is_good()) return true;  // that is left already
-    const RightHandSides sides = right_hand_sides_of(call);
-    NetLinear x(*s.network, lane, true, team, *call.kept->box, call.kept->r, sides.in, sides.terms, kept.memory(),
+    const RightHandSides rhs = right_hand_sides_of(call);
+    NetLinear x(*s.network, lane, true, team, *call.kept->box, call.kept->r, rhs.in, rhs.terms, kept.memory(),
                 {scratch});
     kept.lend_to(x);
     return solve_linear(call, x, tally, [] {}) == 0;

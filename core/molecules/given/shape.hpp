@@ -27,8 +27,8 @@ struct Shape {
     std::int32_t start() const { return elimination->n_core > 0 ? 0 : elimination->atom_of[elimination->n_tree]; }
     template <class Each>
     void walk(const Each &each) const {
-        for (std::int32_t slot = elimination->n_core > 0 ? 0 : elimination->n_tree; slot-- > 0;)
-            each(elimination->bond_of[slot], i(elimination->bond_of[slot]) == elimination->atom_of[slot]);
+        for (std::int32_t index = elimination->n_core > 0 ? 0 : elimination->n_tree; index-- > 0;)
+            each(elimination->bond_of[index], i(elimination->bond_of[index]) == elimination->atom_of[index]);
         for (const std::int32_t step : round_cycles) each(step < 0 ? ~step : step, step < 0);
     }
 };

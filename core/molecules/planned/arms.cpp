@@ -24,14 +24,15 @@ public:
     }
 
 private:
-    // Whether the bond at a place goes on along the one below it: at an atom with that child alone, to the next atom
+    // Whether the bond at an index goes on along the one below it: at an atom with that child alone, to the next atom
     // and the next bond in either direction.
-    bool goes_on(std::int32_t place) const {
-        if (s_.child_start[place + 1] - s_.child_start[place] != 1 || s_.child[s_.child_start[place]] != place - 1)
+    bool goes_on(std::int32_t bond_index) const {
+        if (s_.child_start[bond_index + 1] - s_.child_start[bond_index] != 1 ||
+            s_.child[s_.child_start[bond_index]] != bond_index - 1)
             return false;
-        const std::int32_t step = s_.atom_of[place] - s_.atom_of[place - 1];
-        return (step == 1 || step == -1) && s_.atom_of[s_.parent[place]] - s_.atom_of[place] == step &&
-               s_.bond_of[place] - s_.bond_of[place - 1] == step;
+        const std::int32_t step = s_.atom_of[bond_index] - s_.atom_of[bond_index - 1];
+        return (step == 1 || step == -1) && s_.atom_of[s_.parent[bond_index]] - s_.atom_of[bond_index] == step &&
+               s_.bond_of[bond_index] - s_.bond_of[bond_index - 1] == step;
     }
 
     // Longer ones are cut into equal parts. What is left of each stays outside, at its upper end.
@@ -60,15 +61,16 @@ private:
     // The last bond of the chain that an arm is stays outside its segments: it ends at the highest atom, if the arm
     // ascends, or at the lowest one.
     void list_stretches() {
-        std::int32_t slot = 0, place = 0;
+        std::int32_t index = 0, bond_index = 0;
         for (std::size_t a = 0; a < x_.arm.size(); ++a) {
             const EliminationPlan::Arm &arm = x_.arm[a];
             const std::int32_t stop = arm.bottom + 1;
-            x_.stretch.push_back({slot, stop, place, arm.ascending ? stop - 1 : stop, static_cast<std::int32_t>(a)});
-            slot = arm.top() + 1;
-            place = arm.ascending ? slot - 1 : slot;
+            x_.stretch.push_back(
+                {index, stop, bond_index, arm.ascending ? stop - 1 : stop, static_cast<std::int32_t>(a)});
+            index = arm.top() + 1;
+            bond_index = arm.ascending ? index - 1 : index;
         }
-        x_.stretch.push_back({slot, s_.n_tree, place, s_.n_tree, -1});
+        x_.stretch.push_back({index, s_.n_tree, bond_index, s_.n_tree, -1});
     }
 
     // In the order of their atoms.
@@ -77,9 +79,9 @@ private:
         std::iota(order.begin(), order.end(), 0);
         std::sort(order.begin(), order.end(),
                   [&](std::int32_t a, std::int32_t b) { return x_.arm[at(a)].first_atom < x_.arm[at(b)].first_atom; });
-        const std::vector<EliminationPlan::Arm> by_slot = x_.arm;
+        const std::vector<EliminationPlan::Arm> by_index = x_.arm;
         for (std::size_t a = 0; a < order.size(); ++a) {
-            x_.arm[a] = by_slot[at(order[a])];
+            x_.arm[a] = by_index[at(order[a])];
             x_.stretch[at(order[a])].arm = static_cast<std::int32_t>(a);
             if (a > 0) x_.arm[a].inner_before = x_.arm[a - 1].inner_before + x_.arm[a - 1].n_bonds - 1;
         }

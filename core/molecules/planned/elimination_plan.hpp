@@ -21,7 +21,7 @@ std::unique_ptr<const EliminationPlan> make_elimination_plan(std::int32_t n_atom
                                                              std::int64_t most_bytes = no_limit,
                                                              EliminationWork *work = nullptr);
 
-// Of a junction of paths: with places of its bonds, and without what large molecules need.
+// Of a junction of paths: with indices of its bonds, and without what large molecules need.
 std::unique_ptr<const EliminationPlan> make_junction_plan(std::int32_t n_atoms, std::int32_t n_bonds,
                                                           const std::int32_t *pairs, const unsigned char *fixed);
 

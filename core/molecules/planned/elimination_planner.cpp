@@ -81,9 +81,9 @@ void EliminationPlanner::hang_from_leaf(std::int32_t centre) {
     }
 }
 
-// The trees below the atoms that were not taken away, from the last slot to the first. Of molecules that go in lanes
+// The trees below the atoms that were not taken away, from the last index to the first. Of molecules that go in lanes
 // level by level, so that what waits for each other is far apart and the children of all atoms follow each other. Of
-// large ones each atom is followed by all that hangs from it, so that a tile of the slots is connected.
+// large ones each atom is followed by all that hangs from it, so that a tile of the indices is connected.
 void EliminationPlanner::number_trees() {
     Numbers &order = m_.stack, &left = m_.next;
     const auto add_children = [&](std::int32_t i, Numbers &to) {
@@ -180,19 +180,19 @@ void EliminationPlanner::check_atoms(const Numbers &core, std::int64_t most_byte
 }
 
 void EliminationPlanner::invert_numbers() {
-    m_.slot_of.resize(at(s_.n_atoms));
-    for (std::int32_t i = 0; i < s_.n_atoms; ++i) m_.slot_of[at(m_.atom_of[at(i)])] = i;
-    if (for_ == junction) m_.place_of.resize(at(s_.n_bonds));
-    for (std::int32_t k = 0; for_ == junction && k < s_.n_bonds; ++k) m_.place_of[at(m_.bond_of[at(k)])] = k;
+    m_.index_of.resize(at(s_.n_atoms));
+    for (std::int32_t i = 0; i < s_.n_atoms; ++i) m_.index_of[at(m_.atom_of[at(i)])] = i;
+    if (for_ == junction) m_.bond_index_of.resize(at(s_.n_bonds));
+    for (std::int32_t k = 0; for_ == junction && k < s_.n_bonds; ++k) m_.bond_index_of[at(m_.bond_of[at(k)])] = k;
     m_.parent.resize(at(s_.n_tree));
     for (std::int32_t k = 0; k < s_.n_tree; ++k)
-        m_.parent[at(k)] = m_.slot_of[at(other_end(m_.bond_of[at(k)], m_.atom_of[at(k)]))];
+        m_.parent[at(k)] = m_.index_of[at(other_end(m_.bond_of[at(k)], m_.atom_of[at(k)]))];
     const bool round = s_.type == EliminationPlan::ring || s_.type == EliminationPlan::triangle;
     m_.from.reserve(at(s_.n_core));
     m_.to.reserve(at(s_.n_core));
     for (std::int32_t p = 0; p < s_.n_core; ++p) {
         const std::int32_t k = m_.bond_of[at(s_.n_tree + p)];
-        const std::int32_t i = m_.slot_of[at(m_.atom_i[at(k)])], j = m_.slot_of[at(m_.atom_j[at(k)])];
+        const std::int32_t i = m_.index_of[at(m_.atom_i[at(k)])], j = m_.index_of[at(m_.atom_j[at(k)])];
         m_.from.push_back(round ? s_.n_tree + p : i);
         m_.to.push_back(round ? s_.n_tree + (p + 1) % s_.n_core : j);
     }

@@ -33,7 +33,7 @@ public:
         give_back();
         list_entries();
         list_updates();
-        list_sides();
+        list_contributions();
         close();
     }
 
@@ -77,7 +77,7 @@ private:
         for (const std::int32_t end : subtree_end_) first = open_tiles(first, end);
         open_tiles(first, s_.n_bonds);
         a_.list.n_columns = static_cast<std::int32_t>(in_fours(s_.n_bonds));
-        a_.place_of.resize(at(s_.n_atoms));
+        a_.site_of.resize(at(s_.n_atoms));
         number_.assign(at(s_.n_atoms), -1);
         // An atom is at home in the first tile that has bonds of it.
         home_.assign(at(s_.n_atoms), -1);
@@ -122,7 +122,7 @@ private:
         };
         t.first_site = size_of(a_.atom_of);
         for (const std::int32_t *i = own_.begin(tile); i != own_.end(tile); ++i) {
-            a_.place_of[at(*i)] = add_site(t, *i);
+            a_.site_of[at(*i)] = add_site(t, *i);
             add_later_bonds(*i);
         }
         t.own_end = size_of(a_.atom_of);
@@ -166,7 +166,7 @@ private:
 
     void list_homes() {
         a_.home.resize(a_.atom_of.size());
-        for (std::size_t site = 0; site < a_.home.size(); ++site) a_.home[site] = a_.place_of[at(a_.atom_of[site])];
+        for (std::size_t site = 0; site < a_.home.size(); ++site) a_.home[site] = a_.site_of[at(a_.atom_of[site])];
         std::vector<std::vector<LdlPlan::Visit>> visits(a_.tile.size());
         for (std::size_t n = 0; n < a_.tile.size(); ++n)
             for (std::int32_t site = a_.tile[n].own_end; site < a_.tile[n].first_site + visiting_[n]; ++site)
@@ -184,17 +184,17 @@ private:
             Numbers().swap(*list);
     }
 
-    // Where a tile with these sides from `first` on gives to a column or an entry of a later one.
-    static std::int32_t side_of(std::int32_t number, std::int32_t first, std::int32_t &n, Numbers &sides,
-                                std::vector<LdlPlan::Late> &late) {
-        std::int32_t &side = sides[at(number)];
-        if (side < first) late.push_back({number, side = n++});
-        return side;
+    // Where a tile with these contributions from `first` on gives to a column or an entry of a later one.
+    static std::int32_t contribution_of(std::int32_t number, std::int32_t first, std::int32_t &n,
+                                        Numbers &contributions, std::vector<LdlPlan::Late> &late) {
+        std::int32_t &contribution = contributions[at(number)];
+        if (contribution < first) late.push_back({number, contribution = n++});
+        return contribution;
     }
 
     void list_entries() {
         for (Numbers *const list : {&a_.row, &a_.row_4, &a_.column_4, &a_.mass}) list->resize(at(a_.list.n_entries));
-        side_of_.assign(at(s_.n_bonds), -1);
+        contribution_of_.assign(at(s_.n_bonds), -1);
         row_of_.assign(at(s_.n_bonds), -1);
         for (Tile &t : a_.tile) list_entries(t);
     }
@@ -204,7 +204,7 @@ private:
                            none = 2 * (t.end_site - t.first_site);
         for (std::size_t b = 0; b < extra.size(); ++b) row_of_[at(extra[b])] = own_rows + static_cast<std::int32_t>(b);
         const std::int32_t *const from = a_.from.data() + t.first_row, *const to_atom = a_.to.data() + t.first_row;
-        const std::int32_t first_side = a_.list.n_columns;
+        const std::int32_t first_contribution = a_.list.n_columns;
         t.first_run = size_of(a_.run);
         std::size_t to = at(t.first_entry);
         for (std::int32_t p = t.first; p < t.end; ++p) {
@@ -214,7 +214,9 @@ private:
             const std::int32_t i = from[p - t.first], j = to_atom[p - t.first];
             for (std::int32_t e = start_[at(p)]; e < start_[at(p) + 1]; ++e, ++to) {
                 const std::int32_t q = row_[at(e)], row = q < t.end ? q - t.first : row_of_[at(q)];
-                a_.row[to] = q < t.end ? q : side_of(q, first_side, a_.list.n_columns, side_of_, a_.late);
+                a_.row[to] = q < t.end
+                                 ? q
+                                 : contribution_of(q, first_contribution, a_.list.n_columns, contribution_of_, a_.late);
                 a_.column_4[to] = 4 * (p - t.first);
                 // Both point to or from the atom that they share; or one to it, one from it; or none is shared.
                 const std::int32_t k = row < 0 ? -1 : from[row], l = row < 0 ? -1 : to_atom[row];
@@ -234,13 +236,13 @@ private:
             n_updates += n * (n - 1) / 2;
         }
         a_.update.resize(at(n_updates));
-        side_of_.assign(at(a_.list.n_entries), -1);
+        contribution_of_.assign(at(a_.list.n_entries), -1);
         for (const Tile &t : a_.tile) entries_before_.push_back(t.first_entry - start_[at(t.first)]);
         std::int32_t *to = a_.update.data();
         for (Tile &t : a_.tile) to = list_updates(t, to);
     }
     std::int32_t *list_updates(Tile &t, std::int32_t *to) {
-        const std::int32_t first_side = a_.list.n_entries;
+        const std::int32_t first_contribution = a_.list.n_entries;
         t.first_update = to - a_.update.data();
         for (std::int32_t p = t.first; p < t.end; ++p) {
             const std::int32_t n = start_[at(p) + 1] - start_[at(p)], *const row = row_.data() + start_[at(p)];
@@ -257,7 +259,7 @@ private:
             for (std::int32_t i = 1; n > 1 && row[n - 2] >= t.end && i < n; ++i)
                 for (std::int32_t j = 0; j < i; ++j)
                     if (std::int32_t &e = to[at(i) * at(i - 1) / 2 + at(j)]; row[j] >= t.end)
-                        e = side_of(e, first_side, a_.list.n_entries, side_of_, a_.late_entry);
+                        e = contribution_of(e, first_contribution, a_.list.n_entries, contribution_of_, a_.late_entry);
             to += static_cast<std::ptrdiff_t>(n) * (n - 1) / 2;
         }
         return to;
@@ -270,7 +272,7 @@ private:
     }
 
     // Late columns and entries of all tiles, in their order, and columns of which not all is known in their tile.
-    void list_sides() {
+    void list_contributions() {
         const auto before = [](const LdlPlan::Late &a, const LdlPlan::Late &b) { return a.number < b.number; };
         std::stable_sort(a_.late.begin(), a_.late.end(), before);
         std::stable_sort(a_.late_entry.begin(), a_.late_entry.end(), before);
@@ -283,7 +285,7 @@ private:
                 const std::int32_t first = late;
                 while (late < size_of(a_.late) && a_.late[at(late)].number == p) ++late;
                 bool outer = late > first;
-                for (int end = 0; end < 2; ++end) outer = outer || a_.place_of[at(end_of(p, end))] < t.first_site;
+                for (int end = 0; end < 2; ++end) outer = outer || a_.site_of[at(end_of(p, end))] < t.first_site;
                 if (outer) a_.outer.push_back(p);
             }
             while (entry < size_of(a_.late_entry) && a_.late_entry[at(entry)].number < t.end_entry) ++entry;
@@ -306,7 +308,7 @@ private:
         l.subtree = a_.subtree.data();
         l.atom_of = a_.atom_of.data();
         l.home = a_.home.data();
-        l.place_of = a_.place_of.data();
+        l.site_of = a_.site_of.data();
         l.bond_of = a_.bond_of.data();
         l.from = a_.from.data();
         l.to = a_.to.data();
@@ -334,7 +336,7 @@ private:
     Numbers entries_before_;      // by tile, inert ones
     Numbers visiting_;            // by tile, its atoms that its own bonds have
     Numbers tile_of_, home_;      // tile of a column; of an atom
-    Numbers side_of_;             // the last one of a column, then of an entry
+    Numbers contribution_of_;     // the last one of a column, then of an entry
     Numbers row_of_;              // of a column among a tile's extra bonds
 };
 

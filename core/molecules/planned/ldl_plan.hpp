@@ -10,7 +10,7 @@
 namespace holonomic {
 
 struct LdlArrays {
-    Numbers atom_of, home, place_of, bond_of, from, to, row, row_4, column_4, mass, update, outer;
+    Numbers atom_of, home, site_of, bond_of, from, to, row, row_4, column_4, mass, update, outer;
     std::vector<LdlPlan::Tile> tile;
     std::vector<LdlPlan::Subtree> subtree;
     std::vector<LdlPlan::ColumnRun> run;

@@ -11,9 +11,9 @@ constexpr std::int32_t bonds_of_share = 2048, nodes_of_share = 512;
 
 std::int32_t size_of(const Numbers &list) { return static_cast<std::int32_t>(list.size()); }
 
-bool is_node(const EliminationPlan &s, std::int32_t slot) {
-    const std::int32_t c = slot - s.n_tree;
-    return s.meet_start[c + 1] - s.meet_start[c] != 2 || s.child_start[slot + 1] > s.child_start[slot];
+bool is_node(const EliminationPlan &s, std::int32_t index) {
+    const std::int32_t c = index - s.n_tree;
+    return s.meet_start[c + 1] - s.meet_start[c] != 2 || s.child_start[index + 1] > s.child_start[index];
 }
 
 class NetworkMaker {
@@ -33,39 +33,39 @@ public:
     }
 
 private:
-    // Bonds of the core and the slots behind each of them, from one node to another.
+    // Bonds of the core and the indices behind each of them, from one node to another.
     struct Strand {
         std::int32_t first, n_bonds, node[2];  // in walked_
     };
     struct Step {
-        std::int32_t bond, slot;
+        std::int32_t bond, index;
     };
 
     void find_nodes() {
         node_.assign(at(s_.n_atoms), -1);
-        for (std::int32_t slot = s_.n_tree; slot < s_.n_atoms; ++slot)
-            if (is_node(s_, slot)) {
-                node_[at(slot)] = size_of(slot_of_node_);
-                slot_of_node_.push_back(slot);
+        for (std::int32_t index = s_.n_tree; index < s_.n_atoms; ++index)
+            if (is_node(s_, index)) {
+                node_[at(index)] = size_of(index_of_node_);
+                index_of_node_.push_back(index);
             }
     }
     void find_strands() {
         std::vector<unsigned char> seen(at(s_.n_core), 0);
-        for (const std::int32_t start : slot_of_node_)
+        for (const std::int32_t start : index_of_node_)
             for (std::int32_t m = s_.meet_start[start - s_.n_tree]; m < s_.meet_start[start - s_.n_tree + 1]; ++m) {
-                std::int32_t p = s_.meet[m], slot = start;
+                std::int32_t p = s_.meet[m], index = start;
                 if (seen[at(p)]) continue;
                 Strand strand = {static_cast<std::int32_t>(walked_.size()), 0, {node_[at(start)], -1}};
                 for (;;) {
                     seen[at(p)] = 1;
-                    slot = s_.from[p] + s_.to[p] - slot;
-                    walked_.push_back({s_.n_tree + p, slot});
+                    index = s_.from[p] + s_.to[p] - index;
+                    walked_.push_back({s_.n_tree + p, index});
                     ++strand.n_bonds;
-                    if (node_[at(slot)] >= 0) break;
-                    const std::int32_t *const meet = s_.meet + s_.meet_start[slot - s_.n_tree];
+                    if (node_[at(index)] >= 0) break;
+                    const std::int32_t *const meet = s_.meet + s_.meet_start[index - s_.n_tree];
                     p = meet[0] == p ? meet[1] : meet[0];
                 }
-                strand.node[1] = node_[at(slot)];
+                strand.node[1] = node_[at(index)];
                 strand_.push_back(strand);
             }
     }
@@ -77,11 +77,11 @@ private:
 
     // The nodes of a share by how many own unknowns they have.
     void sort_nodes() {
-        Numbers n_own(slot_of_node_.size(), 0), slots(slot_of_node_);
+        Numbers n_own(index_of_node_.size(), 0), indices(index_of_node_);
         for (const Strand &strand : strand_)
             for (int e = 0; e < (strand.n_bonds == 1 ? 1 : 2); ++e) ++n_own[at(strand.node[e])];
-        Numbers order, number(slots.size());
-        for (std::int32_t first = 0, n = size_of(slots); first < n; first += nodes_of_share) {
+        Numbers order, number(indices.size());
+        for (std::int32_t first = 0, n = size_of(indices); first < n; first += nodes_of_share) {
             const std::int32_t end = std::min(n, first + nodes_of_share);
             a_.nodes_start.push_back(static_cast<std::int32_t>(a_.nodes.size()));
             for (std::int32_t own = *std::max_element(&n_own[at(first)], n_own.data() + end), fewer; own >= 0;
@@ -100,9 +100,9 @@ private:
             }
         }
         a_.nodes_start.push_back(static_cast<std::int32_t>(a_.nodes.size()));
-        for (std::size_t i = 0; i < slots.size(); ++i) {
-            slot_of_node_[i] = slots[at(order[i])];
-            number[at(order[i])] = node_[at(slot_of_node_[i])] = static_cast<std::int32_t>(i);
+        for (std::size_t i = 0; i < indices.size(); ++i) {
+            index_of_node_[i] = indices[at(order[i])];
+            number[at(order[i])] = node_[at(index_of_node_[i])] = static_cast<std::int32_t>(i);
         }
         for (Strand &strand : strand_)
             for (std::int32_t &node : strand.node) node = number[at(node)];
@@ -124,42 +124,43 @@ private:
                 for (std::int32_t j = 0; j < width; ++j) {
                     const Step &step = walked_[at(strand_[at(first + j)].first + k)];
                     a_.bond_of.push_back(s_.bond_of[step.bond]);
-                    if (k + 1 < length) a_.atom_of.push_back(s_.atom_of[step.slot]);
+                    if (k + 1 < length) a_.atom_of.push_back(s_.atom_of[step.index]);
                 }
         }
         a_.bundle_start.push_back(static_cast<std::int32_t>(a_.bundle.size()));
     }
     void lay_out_rest() {
         NetworkPlan &p = a_.plan;
-        p.first_tree_place = size_of(a_.bond_of);
+        p.first_tree_bond = size_of(a_.bond_of);
         p.first_node = size_of(a_.atom_of);
-        p.first_tree = p.first_node + size_of(slot_of_node_);
-        for (const std::int32_t slot : slot_of_node_) a_.atom_of.push_back(s_.atom_of[slot]);
+        p.first_tree = p.first_node + size_of(index_of_node_);
+        for (const std::int32_t index : index_of_node_) a_.atom_of.push_back(s_.atom_of[index]);
         a_.from.resize(at(s_.n_bonds));
         a_.to.resize(at(s_.n_bonds));
         for (const NetworkPlan::Bundle &b : a_.bundle)
             for (std::int32_t j = 0; j < b.width; ++j)
                 for (std::int32_t k = 0; k < b.length; ++k) {
                     const Strand &strand = strand_[at(b.first_strand + j)];
-                    const std::size_t place = at(b.first_place + k * b.width + j);
-                    a_.from[place] = k == 0 ? p.first_node + strand.node[0] : b.first_site + (k - 1) * b.width + j;
-                    a_.to[place] = k + 1 == b.length ? p.first_node + strand.node[1] : b.first_site + k * b.width + j;
+                    const std::size_t bond_index = at(b.first_index + k * b.width + j);
+                    a_.from[bond_index] = k == 0 ? p.first_node + strand.node[0] : b.first_site + (k - 1) * b.width + j;
+                    a_.to[bond_index] =
+                        k + 1 == b.length ? p.first_node + strand.node[1] : b.first_site + k * b.width + j;
                 }
-        for (std::int32_t slot = 0; slot < s_.n_tree; ++slot) {
-            a_.atom_of.push_back(s_.atom_of[slot]);
-            a_.bond_of.push_back(s_.bond_of[slot]);
-            a_.from[at(p.first_tree_place + slot)] = site_of(s_.parent[slot]);
-            a_.to[at(p.first_tree_place + slot)] = p.first_tree + slot;
+        for (std::int32_t index = 0; index < s_.n_tree; ++index) {
+            a_.atom_of.push_back(s_.atom_of[index]);
+            a_.bond_of.push_back(s_.bond_of[index]);
+            a_.from[at(p.first_tree_bond + index)] = site_of(s_.parent[index]);
+            a_.to[at(p.first_tree_bond + index)] = p.first_tree + index;
         }
         a_.atom_of.insert(a_.atom_of.end(), NetworkPlan::fetched_ahead, a_.atom_of[0]);
     }
-    std::int32_t site_of(std::int32_t slot) const {
-        return slot < s_.n_tree ? a_.plan.first_tree + slot : a_.plan.first_node + node_[at(slot)];
+    std::int32_t site_of(std::int32_t index) const {
+        return index < s_.n_tree ? a_.plan.first_tree + index : a_.plan.first_node + node_[at(index)];
     }
 
     // Unknowns by their nodes.
     void list_unknowns() {
-        const std::int32_t n = static_cast<std::int32_t>(strand_.size()), nodes = size_of(slot_of_node_);
+        const std::int32_t n = static_cast<std::int32_t>(strand_.size()), nodes = size_of(index_of_node_);
         std::int32_t n_unknowns = 0;
         for (std::size_t i = 0, share = 0; i < a_.nodes.size(); ++i) {
             if (static_cast<std::int32_t>(i) == a_.nodes_start[share]) {
@@ -174,7 +175,7 @@ private:
         for (const Strand &strand : strand_)
             if (strand.n_bonds == 1) ++a_.foreign_start[at(strand.node[1]) + 1];
         for (std::size_t i = 0; i < at(nodes); ++i) a_.foreign_start[i + 1] += a_.foreign_start[i];
-        for (Numbers *list : {&a_.place_of, &a_.node_of, &a_.partner}) list->resize(at(n_unknowns));
+        for (Numbers *list : {&a_.bond_index_of, &a_.node_of, &a_.partner}) list->resize(at(n_unknowns));
         a_.sign.resize(at(n_unknowns));
         a_.other_node.assign(at(n_unknowns), -1);
         a_.foreign.resize(at(a_.foreign_start.back()));
@@ -197,19 +198,20 @@ private:
                     u = like.first_unknown + own[at(node)]++ * like.count + node - like.first_node;
                     a_.node_of[at(u)] = node;
                     a_.sign[at(u)] = e == 0 ? 1 : -1;
-                    a_.place_of[at(u)] = b.first_place + i - b.first_strand + (e == 0 ? 0 : b.length - 1) * b.width;
+                    a_.bond_index_of[at(u)] =
+                        b.first_index + i - b.first_strand + (e == 0 ? 0 : b.length - 1) * b.width;
                 }
         for (std::int32_t i = 0; i < n; ++i)
             for (int e = 0; e < 2; ++e)
                 a_.partner[at(a_.strand_unknown[2 * at(i) + at(e)])] = a_.strand_unknown[2 * at(i) + at(1 - e)];
     }
     void list_children() {
-        const auto list = [&](std::int32_t slot) {
+        const auto list = [&](std::int32_t index) {
             a_.child_start.push_back(size_of(a_.child));
-            a_.child.insert(a_.child.end(), s_.child + s_.child_start[slot], s_.child + s_.child_start[slot + 1]);
+            a_.child.insert(a_.child.end(), s_.child + s_.child_start[index], s_.child + s_.child_start[index + 1]);
         };
-        for (const std::int32_t slot : slot_of_node_) list(slot);
-        for (std::int32_t slot = 0; slot < s_.n_tree; ++slot) list(slot);
+        for (const std::int32_t index : index_of_node_) list(index);
+        for (std::int32_t index = 0; index < s_.n_tree; ++index) list(index);
         a_.child_start.push_back(size_of(a_.child));
     }
 
@@ -218,8 +220,8 @@ private:
         p.n_atoms = s_.n_atoms;
         p.n_bonds = s_.n_bonds;
         p.n_strands = static_cast<std::int32_t>(strand_.size());
-        p.n_nodes = size_of(slot_of_node_);
-        p.n_unknowns = size_of(a_.place_of);
+        p.n_nodes = size_of(index_of_node_);
+        p.n_unknowns = size_of(a_.bond_index_of);
         p.n_tree = s_.n_tree;
         p.has_foreign = !a_.foreign.empty();
         p.bundle = a_.bundle.data();
@@ -236,7 +238,7 @@ private:
         p.strand_node = a_.strand_node.data();
         p.strand_unknown = a_.strand_unknown.data();
         p.nodes_of = a_.nodes_of.data();
-        p.place_of = a_.place_of.data();
+        p.bond_index_of = a_.bond_index_of.data();
         p.node_of = a_.node_of.data();
         p.partner = a_.partner.data();
         p.sign = a_.sign.data();
@@ -249,7 +251,7 @@ private:
 
     const EliminationPlan &s_;
     NetworkArrays &a_;
-    Numbers node_, slot_of_node_;  // of a slot; of a node
+    Numbers node_, index_of_node_;  // of an index; of a node
     std::vector<Step> walked_;
     std::vector<Strand> strand_;
 };
@@ -265,8 +267,8 @@ std::size_t bytes_of(const NetworkArrays &a) {
     std::size_t bytes = bytes_of(a.fronts) + a.bundle.capacity() * sizeof(a.bundle[0]) +
                         a.nodes.capacity() * sizeof(a.nodes[0]) + a.sign.capacity() * sizeof(double);
     for (const Numbers *list : {&a.bundle_start, &a.nodes_start, &a.unknown_start, &a.nodes_of, &a.atom_of, &a.bond_of,
-                                &a.from, &a.to, &a.strand_node, &a.strand_unknown, &a.place_of, &a.node_of, &a.partner,
-                                &a.foreign_start, &a.foreign, &a.other_node, &a.child_start, &a.child})
+                                &a.from, &a.to, &a.strand_node, &a.strand_unknown, &a.bond_index_of, &a.node_of,
+                                &a.partner, &a.foreign_start, &a.foreign, &a.other_node, &a.child_start, &a.child})
         bytes += list->capacity() * sizeof(std::int32_t);
     return bytes;
 }

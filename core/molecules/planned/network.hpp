@@ -22,7 +22,7 @@ struct NetworkArrays {
     std::vector<NetworkPlan::Bundle> bundle;
     std::vector<NetworkPlan::Nodes> nodes;
     Numbers bundle_start, nodes_start, unknown_start, nodes_of, atom_of, bond_of, from, to, strand_node, strand_unknown,
-        place_of, node_of, partner, foreign_start, foreign, other_node, child_start, child;
+        bond_index_of, node_of, partner, foreign_start, foreign, other_node, child_start, child;
     std::vector<double> sign;
     FrontArrays fronts;
     NetworkPlan plan{};

@@ -17,9 +17,9 @@ void for_arrays(EliminationPlan &s, Arrays &a, const Each &each) {
     each(s.atom_i, a.atom_i);
     each(s.atom_j, a.atom_j);
     each(s.atom_of, a.atom_of);
-    each(s.slot_of, a.slot_of);
+    each(s.index_of, a.index_of);
     each(s.bond_of, a.bond_of);
-    each(s.place_of, a.place_of);
+    each(s.bond_index_of, a.bond_index_of);
     each(s.parent, a.parent);
     each(s.child_start, a.child_start);
     each(s.child, a.child);
@@ -73,9 +73,9 @@ template <class... Lists>
 std::size_t bytes(const Lists &...lists) {
     return (bytes(lists) + ...);
 }
-std::size_t bytes(const TreeRuns &r) { return bytes(r.run, r.slot, r.tile_start); }
+std::size_t bytes(const TreeRuns &r) { return bytes(r.run, r.index, r.tile_start); }
 std::size_t bytes(const LdlArrays &f) {
-    return bytes(f.atom_of, f.home, f.place_of, f.bond_of, f.from, f.to, f.row, f.row_4, f.column_4, f.mass, f.update,
+    return bytes(f.atom_of, f.home, f.site_of, f.bond_of, f.from, f.to, f.row, f.row_4, f.column_4, f.mass, f.update,
                  f.outer, f.tile, f.subtree, f.run, f.late, f.late_entry, f.visit);
 }
 

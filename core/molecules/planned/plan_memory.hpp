@@ -16,7 +16,7 @@ namespace holonomic {
 
 // What an elimination plan is made in, one after the other: its arrays, and what these are found with.
 struct EliminationWork {
-    Numbers atom_i, atom_j, atom_of, slot_of, bond_of, place_of, parent, child_start, child, pair_start, from, to,
+    Numbers atom_i, atom_j, atom_of, index_of, bond_of, bond_index_of, parent, child_start, child, pair_start, from, to,
         meet_start, meet, column_start, row;
     std::vector<std::uint8_t> fixed;
 

@@ -10,8 +10,8 @@ namespace holonomic {
 
 struct TreeRuns {
     std::vector<EliminationPlan::AtomRun> run;
-    std::vector<std::int32_t> slot, tile_start;
-    EliminationPlan::Runs runs() const { return {run.data(), slot.data(), tile_start.data()}; }
+    std::vector<std::int32_t> index, tile_start;
+    EliminationPlan::Runs runs() const { return {run.data(), index.data(), tile_start.data()}; }
 };
 
 // From the parents and the children of an elimination plan. Takes O(n).

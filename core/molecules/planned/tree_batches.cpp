@@ -9,8 +9,8 @@ namespace holonomic {
 
 namespace {
 
-std::int32_t children_of(const EliminationPlan &s, std::int32_t slot) {
-    return s.child_start[slot + 1] - s.child_start[slot];
+std::int32_t children_of(const EliminationPlan &s, std::int32_t index) {
+    return s.child_start[index + 1] - s.child_start[index];
 }
 
 // Atoms with 1, 2, 3, up to most_decomposed and more children.
@@ -25,15 +25,15 @@ public:
         const EliminationPlan &s = elimination;
         left_.assign(at(s.n_atoms), 0);
         depth_.assign(at(s.n_atoms), 0);
-        for (std::int32_t slot = s.n_tree; slot-- > 0;) {
-            depth_[at(slot)] = depth_[at(s.parent[slot])] + 1;
-            if (children_of(s, slot) > 0) {
-                ++left_[at(s.parent[slot])];
+        for (std::int32_t index = s.n_tree; index-- > 0;) {
+            depth_[at(index)] = depth_[at(s.parent[index])] + 1;
+            if (children_of(s, index) > 0) {
+                ++left_[at(s.parent[index])];
                 ++n_left_;
             }
         }
-        for (std::int32_t slot = 0; slot < s.n_tree; ++slot)
-            if (children_of(s, slot) > 0 && left_[at(slot)] == 0) push(slot);
+        for (std::int32_t index = 0; index < s.n_tree; ++index)
+            if (children_of(s, index) > 0 && left_[at(index)] == 0) push(index);
     }
 
     bool done() const { return n_left_ == 0; }
@@ -42,30 +42,30 @@ public:
     std::int32_t best(int c) const {
         const int last = c > 2 ? c : 0;
         for (int i = c; i >= last; --i)
-            if (!ready_[i].empty()) return ready_[i].front().slot;
+            if (!ready_[i].empty()) return ready_[i].front().index;
         return -1;
     }
-    std::int32_t children(std::int32_t slot) const { return children_of(*s_, slot); }
+    std::int32_t children(std::int32_t index) const { return children_of(*s_, index); }
 
-    void take(std::int32_t slot) {
-        std::vector<Ready> &heap = ready_[class_of(children(slot))];
+    void take(std::int32_t index) {
+        std::vector<Ready> &heap = ready_[class_of(children(index))];
         std::pop_heap(heap.begin(), heap.end());
         heap.pop_back();
         --n_left_;
-        const std::int32_t parent = s_->parent[slot];
+        const std::int32_t parent = s_->parent[index];
         if (--left_[at(parent)] == 0 && parent < s_->n_tree) push(parent);
     }
 
 private:
     struct Ready {
-        std::int32_t children, depth, slot;
+        std::int32_t children, depth, index;
         friend bool operator<(const Ready &a, const Ready &b) {
-            return std::tie(a.children, a.depth, a.slot) < std::tie(b.children, b.depth, b.slot);
+            return std::tie(a.children, a.depth, a.index) < std::tie(b.children, b.depth, b.index);
         }
     };
-    void push(std::int32_t slot) {
-        std::vector<Ready> &heap = ready_[class_of(children(slot))];
-        heap.push_back({children(slot), depth_[at(slot)], slot});
+    void push(std::int32_t index) {
+        std::vector<Ready> &heap = ready_[class_of(children(index))];
+        heap.push_back({children(index), depth_[at(index)], index});
         std::push_heap(heap.begin(), heap.end());
     }
 
@@ -77,7 +77,7 @@ private:
 
 // What a step takes: one atom of each tree, or -1.
 struct Choice {
-    std::int32_t slot[most_lanes];
+    std::int32_t index[most_lanes];
     std::int32_t children = 0;
     double worth = -1;
 };
@@ -89,9 +89,9 @@ Choice choose(const GrowingTree *trees, std::size_t n_trees) {
         Choice one;
         double bonds = 0;
         for (std::size_t l = 0; l < n_trees; ++l) {
-            one.slot[l] = trees[l].best(c);
-            if (one.slot[l] < 0) continue;
-            const std::int32_t k = trees[l].children(one.slot[l]);
+            one.index[l] = trees[l].best(c);
+            if (one.index[l] < 0) continue;
+            const std::int32_t k = trees[l].children(one.index[l]);
             one.children = std::max(one.children, k);
             bonds += k + 0.3;
         }
@@ -104,8 +104,8 @@ Choice choose(const GrowingTree *trees, std::size_t n_trees) {
 }  // namespace
 
 TreeProfile::TreeProfile(const EliminationPlan &s) : n_bonds(s.n_bonds) {
-    for (std::int32_t slot = 0; slot < s.n_tree; ++slot) {
-        const std::int32_t k = children_of(s, slot);
+    for (std::int32_t index = 0; index < s.n_tree; ++index) {
+        const std::int32_t k = children_of(s, index);
         if (k > 1) ++(k > 3 ? many : k == 3 ? three : two);
     }
 }
@@ -124,7 +124,7 @@ public:
             element_[l].resize(at(tree[l]->n_atoms));
         }
         steps_.clear();
-        slots_.clear();
+        indices_.clear();
         tile_.clear();
     }
     // Takes the atoms of different trees.
@@ -133,25 +133,25 @@ public:
         const auto done = [](const GrowingTree &t) { return t.done(); };
         while (!std::all_of(trees_, trees_ + n_trees_, done)) {
             Choice choice = choose(trees_, at(n_trees_));
-            std::fill(choice.slot + n_trees_, choice.slot + most_lanes, -1);
-            add_step(choice.slot, choice.children);
+            std::fill(choice.index + n_trees_, choice.index + most_lanes, -1);
+            add_step(choice.index, choice.children);
             for (int l = 0; l < n_trees_; ++l)
-                if (choice.slot[l] >= 0) trees_[l].take(choice.slot[l]);
+                if (choice.index[l] >= 0) trees_[l].take(choice.index[l]);
         }
     }
 
     const EliminationPlan &tree(std::size_t lane) const { return *tree_[n_trees_ == 1 ? 0 : lane]; }
 
-    // slot: of each lane, or -1.
-    void add_step(const std::int32_t *slot, std::int32_t children) {
+    // index: of each lane, or -1.
+    void add_step(const std::int32_t *index, std::int32_t children) {
         steps_.push_back({f_.n_places, children, f_.n_pairs});
         tile_.push_back(f_.n_tiles);
         for (std::size_t l = 0; l < at(lanes_); ++l) {
-            slots_.push_back(slot[l]);
-            if (slot[l] < 0) continue;
+            indices_.push_back(index[l]);
+            if (index[l] < 0) continue;
             const EliminationPlan &s = tree(l);
-            for (std::int32_t a = 0; a < children_of(s, slot[l]); ++a)
-                element_of(l, s.child[s.child_start[slot[l]] + a]) =
+            for (std::int32_t a = 0; a < children_of(s, index[l]); ++a)
+                element_of(l, s.child[s.child_start[index[l]] + a]) =
                     (f_.n_places + a) * lanes_ + static_cast<std::int32_t>(l);
         }
         f_.n_places += children;
@@ -192,39 +192,39 @@ private:
         Number *const atom = &numbers[first], *const above = atom + n_steps, *const lower = above + n_steps,
                       *const bond = lower + n_places;
         for (std::size_t i = 0; i < n_steps; ++i) {
-            const std::int32_t slot = slots_[i], lane = static_cast<std::int32_t>(i % lanes);
+            const std::int32_t index = indices_[i], lane = static_cast<std::int32_t>(i % lanes);
             const EliminationPlan &s = tree(at(lane));
             const TreeBatch::Step &step = steps_[i / lanes];
             std::int32_t element = (f_.n_places + 1 + tile_[i / lanes]) * lanes_ + lane;
-            if (slot >= 0) {
-                atom[i] = static_cast<Number>(s.atom_of[slot]);
-                element = slot == s.n_tree ? f_.n_places * lanes_ + lane : element_of(at(lane), slot);
+            if (index >= 0) {
+                atom[i] = static_cast<Number>(s.atom_of[index]);
+                element = index == s.n_tree ? f_.n_places * lanes_ + lane : element_of(at(lane), index);
             }
             above[i] = static_cast<Number>(element);
-            const std::int32_t children = slot < 0 ? 0 : children_of(s, slot);
+            const std::int32_t children = index < 0 ? 0 : children_of(s, index);
             for (std::int32_t a = 0; a < step.children; ++a) {
                 const std::size_t p = at(step.first + a), place = p * lanes + at(lane);
                 lower[place] = atom[i];
                 if (a >= children) continue;
-                const std::int32_t child = s.child[s.child_start[slot] + a];
+                const std::int32_t child = s.child[s.child_start[index] + a];
                 lower[place] = static_cast<Number>(s.atom_of[child]);
                 bond[place] = static_cast<Number>(s.bond_of[child]);
                 held[p] = static_cast<std::uint16_t>(held[p] | 1u << lane);
             }
         }
     }
-    std::int32_t &element_of(std::size_t lane, std::int32_t slot) {
-        return element_[n_trees_ == 1 ? 0 : lane][at(slot)];
+    std::int32_t &element_of(std::size_t lane, std::int32_t index) {
+        return element_[n_trees_ == 1 ? 0 : lane][at(index)];
     }
 
     int lanes_ = 0, n_trees_ = 0;
     const EliminationPlan *const *tree_ = nullptr;
     TreeBatch f_{};
     GrowingTree trees_[most_lanes];
-    std::vector<std::int32_t> element_[most_lanes];  // by slot
+    std::vector<std::int32_t> element_[most_lanes];  // by index
     std::vector<TreeBatch::Step> steps_;
-    std::vector<std::int32_t> slots_;  // [steps][lanes], or -1
-    std::vector<std::int32_t> tile_;   // [steps]
+    std::vector<std::int32_t> indices_;  // [steps][lanes], or -1
+    std::vector<std::int32_t> tile_;     // [steps]
 };
 
 TreeBatches::TreeBatches() = default;
@@ -254,16 +254,16 @@ void TreeBatches::add_large(int lanes, const EliminationPlan *tree) {
             return std::make_pair(class_of(children_of(s, a)) > 2, children_of(s, b)) <
                    std::make_pair(class_of(children_of(s, b)) > 2, children_of(s, a));
         });
-        std::int32_t slot[most_lanes];
+        std::int32_t index[most_lanes];
         for (std::size_t i = 0; i < ready.size();) {
             const std::int32_t most = children_of(s, ready[i]);
             const auto fits = [&](std::int32_t other) {
                 const int c = class_of(children_of(s, other));
                 return c == class_of(most) || (c < 3 && class_of(most) < 3);
             };
-            std::fill(slot, slot + most_lanes, -1);
-            for (int l = 0; l < lanes && i < ready.size() && fits(ready[i]); ++l) slot[l] = ready[i++];
-            maker.add_step(slot, most);
+            std::fill(index, index + most_lanes, -1);
+            for (int l = 0; l < lanes && i < ready.size() && fits(ready[i]); ++l) index[l] = ready[i++];
+            maker.add_step(index, most);
         }
         ready.clear();
     };
@@ -273,7 +273,7 @@ void TreeBatches::add_large(int lanes, const EliminationPlan *tree) {
         tile_start_.push_back(maker.n_steps());
         for (std::int32_t r = s.runs.tile_start[p]; r < s.runs.tile_start[p + 1]; ++r) {
             const EliminationPlan::AtomRun &run = s.runs.run[r];
-            ready.insert(ready.end(), s.runs.slot + run.first, s.runs.slot + run.first + run.count);
+            ready.insert(ready.end(), s.runs.index + run.first, s.runs.index + run.first + run.count);
             if (r + 1 == s.runs.tile_start[p + 1] || s.runs.run[r + 1].level != run.level) add_level();
         }
     }

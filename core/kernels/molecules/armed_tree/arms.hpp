@@ -110,11 +110,11 @@ static inline bool up_segments(const ArmedTree &z, int32_t a) {
 HOL_NOINLINE void up_arm(ArmedTree &z, int32_t a) {
     const EliminationPlan::Arm &arm = z.x.s.arm[a];
     unsigned char &alone = z.arms.alone[a];
-    load_slot(z, arm.top());
+    load_index(z, arm.top());
     if (!alone && up_segments(z, a)) return;
     alone = 1;
-    for (int32_t slot = arm.bottom + 1; slot < arm.top(); ++slot) load_slot(z, slot);
-    for (int32_t slot = arm.bottom + 1; slot <= arm.top(); ++slot) up_one(z, slot);
+    for (int32_t index = arm.bottom + 1; index < arm.top(); ++index) load_index(z, index);
+    for (int32_t index = arm.bottom + 1; index <= arm.top(); ++index) up_one(z, index);
 }
 
 // Goes down an arm and finds the multipliers of its separators.
@@ -122,7 +122,7 @@ HOL_NOINLINE void down_arm(ArmedTree &z, int32_t a, bool look) {
     const Molecules<double> &x = z.x;
     const EliminationPlan::Arm &arm = x.s.arm[a];
     if (z.arms.alone[a]) {
-        for (int32_t slot = arm.top(); slot > arm.bottom; --slot) down_atom(z, slot, look);
+        for (int32_t index = arm.top(); index > arm.bottom; --index) down_atom(z, index, look);
         return;
     }
     Summary *const all = summaries_of(z, a);
@@ -144,18 +144,18 @@ HOL_NOINLINE void down_arm(ArmedTree &z, int32_t a, bool look) {
     if (!good) z.x.margin = -1;
 }
 
-// Of atoms between slots, and of bonds between places.
+// Of atoms between indices, and of bonds between bond indices.
 HOL_NOINLINE void write_range(const Molecules<double> &x, bool weighted, const EliminationPlan::Stretch &range,
                               const LinearOutputs &out, MoleculesVirial<double> &virial) {
-    const int32_t first = range.first_place, end = range.end_place;
+    const int32_t first = range.first_index, end = range.end_index;
     if (out.lambda) write_bonds<false>(x, 0.5, out.lambda, 1, first, end);
     if (out.tension) write_bonds<true>(x, 1, out.tension, 1, first, end);
     for (int32_t k = first; k < end && out.virial; ++k) virial.add(x.row[k].d, x.row[k].t * x.row[k].d);
     if (!out.g->x) return;
-    write_slots(x, *out.g, range.first, range.end, [&](int32_t slot) {
-        const Vector3<double> pull = pull_on(x, slot);
-        if (weighted) return add_times(read(*out.g, x.at, x.s.atom_of[slot]), x.w[slot], pull);
-        return out.add ? read(*out.g, x.at, x.s.atom_of[slot]) + pull : pull;
+    write_indices(x, *out.g, range.first, range.end, [&](int32_t index) {
+        const Vector3<double> pull = pull_on(x, index);
+        if (weighted) return add_times(read(*out.g, x.at, x.s.atom_of[index]), x.w[index], pull);
+        return out.add ? read(*out.g, x.at, x.s.atom_of[index]) + pull : pull;
     });
 }
 

@@ -6,9 +6,9 @@
 namespace holonomic::HOL_ISA::graph {
 
 // Reads the atom and the bond above it. The parent is read again from the caller's arrays.
-HOL_INLINE void load_slot(const ArmedTree &z, int32_t slot) {
+HOL_INLINE void load_index(const ArmedTree &z, int32_t index) {
     const Molecules<double> &x = z.x;
-    const int32_t atom = x.s.atom_of[slot], above = x.s.atom_of[x.s.parent[slot]];
+    const int32_t atom = x.s.atom_of[index], above = x.s.atom_of[x.s.parent[index]];
     const double w = x.lane[0].w[atom];
     Vector3<double> d = read(*x.r, x.at, atom) - read(*x.r, x.at, above), unused = {};
     take_image<false>(*x.box, d, unused);
@@ -21,23 +21,23 @@ HOL_INLINE void load_slot(const ArmedTree &z, int32_t slot) {
     if (z.terms & pulls)
         b = Loader<double>::with_pull(d, x.lane[0].w[above], read(*x.in.f, x.at, above), w, read(*x.in.f, x.at, atom),
                                       b);
-    BondRow<double> &row = x.row[slot];
+    BondRow<double> &row = x.row[index];
     row.d = d;
     row.q = dot(d, d);
     row.E = w * row.q;  // of a leaf
     row.t = b;
-    x.w[slot] = w;
+    x.w[index] = w;
 }
 
 // In twice the precision. False: that doesn't do either.
-HOL_NOINLINE bool up_extended(const Molecules<double> &x, int32_t slot, int k) {
-    const AtomRows<double> rows(x, slot);
+HOL_NOINLINE bool up_extended(const Molecules<double> &x, int32_t index, int k) {
+    const AtomRows<double> rows(x, index);
     FlaggedAtom atom = {};
     atom.k = k;
     atom.w = rows.w();
     for (int a = 0; a <= k; ++a) {
         atom.bond[a] = a < k ? rows.bond(a) : rows.above();
-        exact_bond(x, 0, a < k ? rows.child[a] : slot, atom.d[a], atom.low[a]);
+        exact_bond(x, 0, a < k ? rows.child[a] : index, atom.d[a], atom.low[a]);
     }
     if (!up_flagged(atom)) return false;
     for (int a = 0; a <= k; ++a) (a < k ? rows.bond(a) : rows.above()) = atom.bond[a];
@@ -46,15 +46,15 @@ HOL_NOINLINE bool up_extended(const Molecules<double> &x, int32_t slot, int k) {
 }
 
 // Goes up at one atom, with extended arithmetic where plain arithmetic does not do.
-HOL_NOINLINE void up_one(ArmedTree &z, int32_t slot) {
+HOL_NOINLINE void up_one(ArmedTree &z, int32_t index) {
     const Molecules<double> &x = z.x;
     Cancelling &cancelling = z.cancelling;
     double &margin = z.x.margin;
-    const AtomRows<double> rows(x, slot);
-    const int k = x.s.child_start[slot + 1] - x.s.child_start[slot];
-    if (__builtin_expect(cancelling.holds(slot), 0)) {
-        if (k > 3 || !up_extended(x, slot, k)) margin = -1;
-        return cancelling.note_extended(slot);
+    const AtomRows<double> rows(x, index);
+    const int k = x.s.child_start[index + 1] - x.s.child_start[index];
+    if (__builtin_expect(cancelling.holds(index), 0)) {
+        if (k > 3 || !up_extended(x, index, k)) margin = -1;
+        return cancelling.note_extended(index);
     }
     if (k > 3) return up_joint<0, false>(rows, k, z.working, margin);
     double before[8], own = 1;
@@ -70,44 +70,44 @@ HOL_NOINLINE void up_one(ArmedTree &z, int32_t slot) {
         row.E = before[2 * a];
         row.t = before[2 * a + 1];
     }
-    if (!up_extended(x, slot, k)) margin = -1;
-    cancelling.note_extended(slot);
+    if (!up_extended(x, index, k)) margin = -1;
+    cancelling.note_extended(index);
 }
 
 // Deals with an atom with cancelling bonds. The first time it notes the atom, to be eliminated in extended precision
 // the next time. Then products are right, and a result must not be a small difference of what comes up and what comes
 // down.
-HOL_NOINLINE void note_cancelling(ArmedTree &z, int32_t slot, int k) {
+HOL_NOINLINE void note_cancelling(ArmedTree &z, int32_t index, int k) {
     const Molecules<double> &x = z.x;
     Cancelling &cancelling = z.cancelling;
     double &margin = z.x.margin;
     double own = 1;
-    flag_cancelling_bonds(x, slot, k, 1, own);
+    flag_cancelling_bonds(x, index, k, 1, own);
     if (own >= 0) return;
     if (!cancelling.again) {
-        if (!cancelling.note(slot)) margin = -1;
+        if (!cancelling.note(index)) margin = -1;
         return;
     }
-    if (!cancelling.holds(slot)) margin = -1;
-    const double above = x.row[slot].t;
+    if (!cancelling.holds(index)) margin = -1;
+    const double above = x.row[index].t;
     for (int a = 0; a < k; ++a) {
-        const int32_t place = x.s.child[x.s.child_start[slot] + a];
-        const BondRow<double> &row = x.row[place];
-        const double down = row.l * above, A = (x.w[slot] + x.w[place]) * row.q;
-        const double size = abs(row.t) + terms_of(x, row, place, 0) / A;
+        const int32_t bond_index = x.s.child[x.s.child_start[index] + a];
+        const BondRow<double> &row = x.row[bond_index];
+        const double down = row.l * above, A = (x.w[index] + x.w[bond_index]) * row.q;
+        const double size = abs(row.t) + terms_of(x, row, bond_index, 0) / A;
         if (!(abs(row.t - down) + abs(down) <= sqrt(most_cancelled2(x.s.n_bonds)) * size)) margin = -1;
     }
 }
 
-HOL_INLINE void down_atom(ArmedTree &z, int32_t slot, bool look) {
+HOL_INLINE void down_atom(ArmedTree &z, int32_t index, bool look) {
     const Molecules<double> &x = z.x;
-    const int k = x.s.child_start[slot + 1] - x.s.child_start[slot];
+    const int k = x.s.child_start[index + 1] - x.s.child_start[index];
     double own = 1;
     if (look && k > 1) {
-        down_one<double>(x, slot, true, false, nullptr, own);
-        if (__builtin_expect(own < 0, 0)) note_cancelling(z, slot, k);
+        down_one<double>(x, index, true, false, nullptr, own);
+        if (__builtin_expect(own < 0, 0)) note_cancelling(z, index, k);
     } else {
-        down_one<double>(x, slot, false, false, nullptr, own);
+        down_one<double>(x, index, false, false, nullptr, own);
     }
 }
 

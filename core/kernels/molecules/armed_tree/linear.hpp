@@ -26,8 +26,8 @@ struct ArmedTree {
     }
 
     ArmedTree(const EliminationPlan &s, const MoleculeLane &lane, bool packed, const Box &box, const AtomArray &r,
-              const Inputs &in, int sides, const LongTeam *threads, double *scratch)
-        : x{s, &lane, 1, Atoms<double>(&lane, 1, packed), &box, &r, nullptr, nullptr, nullptr, 1, in}, terms(sides),
+              const Inputs &in, int rhs_terms, const LongTeam *threads, double *scratch)
+        : x{s, &lane, 1, Atoms<double>(&lane, 1, packed), &box, &r, nullptr, nullptr, nullptr, 1, in}, terms(rhs_terms),
           team(threads), cancelling() {
         Memory<double> memory = {scratch};
         x.per_cancelled2 = 1 / most_cancelled2(s.n_bonds);

@@ -14,9 +14,9 @@ HOL_NOINLINE void up_armed(ArmedTree &z) {
     x.margin = 1;
     for (int32_t i = 0; i <= x.s.n_arms; ++i) {
         const EliminationPlan::Stretch &stretch = x.s.stretch[i];
-        for (int32_t slot = stretch.first; slot < stretch.end; ++slot) {
-            load_slot(z, slot);
-            if (x.s.child_start[slot + 1] > x.s.child_start[slot]) up_one(z, slot);
+        for (int32_t index = stretch.first; index < stretch.end; ++index) {
+            load_index(z, index);
+            if (x.s.child_start[index + 1] > x.s.child_start[index]) up_one(z, index);
         }
         if (stretch.arm >= 0) up_arm(z, stretch.arm);
     }
@@ -27,12 +27,12 @@ HOL_NOINLINE void down_armed(ArmedTree &z, bool look) {
     for (int32_t i = z.x.s.n_arms; i >= 0; --i) {
         const EliminationPlan::Stretch &stretch = z.x.s.stretch[i];
         if (stretch.arm >= 0) down_arm(z, stretch.arm, look);
-        for (int32_t slot = stretch.end; slot-- > stretch.first;) down_atom(z, slot, look);
+        for (int32_t index = stretch.end; index-- > stretch.first;) down_atom(z, index, look);
     }
 }
 
 bool ArmedTree::read_and_solve(bool look) {
-    for (int32_t slot = x.s.n_tree; slot < x.s.n_atoms; ++slot) x.w[slot] = x.lane[0].w[x.s.atom_of[slot]];
+    for (int32_t index = x.s.n_tree; index < x.s.n_atoms; ++index) x.w[index] = x.lane[0].w[x.s.atom_of[index]];
     eliminate_arms(*this);
     bool again;
     do {  // once more where cancelling bonds have been found
@@ -43,7 +43,7 @@ bool ArmedTree::read_and_solve(bool look) {
     } while (again);
     double sum = 0, most = 0, least = 1;  // of reciprocal pivots
     for (int32_t i = 0; i <= x.s.n_arms; ++i)
-        for (int32_t k = x.s.stretch[i].first_place; k < x.s.stretch[i].end_place; ++k) {
+        for (int32_t k = x.s.stretch[i].first_index; k < x.s.stretch[i].end_index; ++k) {
             sum += abs(x.row[k].t);
             most = max(x.row[k].r, most);
             least = min(x.row[k].r, least);
@@ -51,13 +51,13 @@ bool ArmedTree::read_and_solve(bool look) {
     return (x.margin >= 0 || !look) && sum - sum == 0 && ordinary_squares(least, most, most_ordinary_pivot).set;
 }
 
-HOL_NOINLINE bool is_overcorrected(const Molecules<double> &x, int32_t slot) {
+HOL_NOINLINE bool is_overcorrected(const Molecules<double> &x, int32_t index) {
     double v[3];
-    read_atom(*x.in.v, x.at.number(0, x.s.atom_of[slot]), v);
-    Overcorrected overcorrected(x.row[slot]);
-    for (int32_t c = x.s.child_start[slot]; c < x.s.child_start[slot + 1]; ++c)
+    read_atom(*x.in.v, x.at.number(0, x.s.atom_of[index]), v);
+    Overcorrected overcorrected(x.row[index]);
+    for (int32_t c = x.s.child_start[index]; c < x.s.child_start[index + 1]; ++c)
         overcorrected.add_child(x.row[x.s.child[c]]);
-    return overcorrected.is(x.w[slot], v);
+    return overcorrected.is(x.w[index], v);
 }
 
 bool ArmedTree::any_overcorrected() const {
@@ -67,8 +67,8 @@ bool ArmedTree::any_overcorrected() const {
         return false;
     }
     const auto any_in = [&](int32_t first, int32_t end) {
-        for (int32_t slot = first; slot < end; ++slot)
-            if (is_overcorrected(x, slot)) return true;
+        for (int32_t index = first; index < end; ++index)
+            if (is_overcorrected(x, index)) return true;
         return false;
     };
     for (int32_t i = 0; i <= x.s.n_arms; ++i)

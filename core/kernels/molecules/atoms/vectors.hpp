@@ -1,4 +1,4 @@
-// Vectors of all atoms of a block of molecules: from the caller's arrays to the atoms' slots, and back. Each way is
+// Vectors of all atoms of a block of molecules: from the caller's arrays to the atoms' indices, and back. Each way is
 // compiled once, with a loop for each layout, and what is done with the vectors knows nothing of where they came from.
 // Atoms are taken in the order of the caller's arrays; where their rows follow each other, four are twelve doubles of
 // each lane.
@@ -9,19 +9,20 @@
 
 namespace holonomic::HOL_ISA::graph {
 
-// Where the vector of slot s stands: in a working array, or as three members, one behind the other, of a row per slot.
+// Where the vector of index s stands: in a working array, or as three members, one behind the other, of a row per
+// index.
 template <class V>
-struct Slots {
+struct ByIndex {
     V *first;
     int64_t stride;
-    explicit Slots(Vector3<V> *a) : first(&a->x), stride(3) {}
+    explicit ByIndex(Vector3<V> *a) : first(&a->x), stride(3) {}
     template <class Row>
-    Slots(Row *, V *member) : first(member), stride(sizeof(Row) / sizeof(V)) {}
-    HOL_FORCED Vector3<V> &operator[](int64_t slot) const {
-        return *reinterpret_cast<Vector3<V> *>(first + slot * stride);
+    ByIndex(Row *, V *member) : first(member), stride(sizeof(Row) / sizeof(V)) {}
+    HOL_FORCED Vector3<V> &operator[](int64_t index) const {
+        return *reinterpret_cast<Vector3<V> *>(first + index * stride);
     }
-    HOL_FORCED void put(int64_t slot, const Vector3<V> &a) const {
-        V *const to = first + slot * stride;
+    HOL_FORCED void put(int64_t index, const Vector3<V> &a) const {
+        V *const to = first + index * stride;
         to[0] = a.x;
         to[1] = a.y;
         to[2] = a.z;
@@ -71,12 +72,12 @@ HOL_INLINE void for_rows(const AtomArray &array, const Atoms<V> &at, int32_t fir
     }
 }
 
-// Reads the vectors of n atoms; slot_of has their slots.
+// Reads the vectors of n atoms; index_of has their indices.
 template <class V>
-HOL_NOINLINE void read_vectors(const AtomArray &array, const Atoms<V> &at, const int32_t *slot_of, int32_t n,
-                               const Slots<V> to) {
+HOL_NOINLINE void read_vectors(const AtomArray &array, const Atoms<V> &at, const int32_t *index_of, int32_t n,
+                               const ByIndex<V> to) {
     if (at.layout == elements) {
-        for (int32_t k = 0; k < n; ++k) to[slot_of[k]] = read(array, at, k);
+        for (int32_t k = 0; k < n; ++k) to[index_of[k]] = read(array, at, k);
         return;
     }
     int32_t first = 0;
@@ -85,12 +86,12 @@ HOL_NOINLINE void read_vectors(const AtomArray &array, const Atoms<V> &at, const
             Vector3<V> a[atoms_at_once];
             read_elements<3 * atoms_at_once>(p, a);
             HOL_UNROLL
-            for (int j = 0; j < atoms_at_once; ++j) to.put(slot_of[k + j], a[j]);
+            for (int j = 0; j < atoms_at_once; ++j) to.put(index_of[k + j], a[j]);
         });
     for_rows(array, at, first, n, [&](int32_t k, double **p) HOL_FORCED {
         Vector3<V> a;
         read_rows(p, a);
-        to.put(slot_of[k], a);
+        to.put(index_of[k], a);
     });
 }
 
@@ -118,15 +119,15 @@ struct Written {
     bool all_but_right() const { return right != 0 && (which | right) == all_of<V> && !fixed && !lane; }
 };
 
-// Writes the vectors of n atoms, from[slot].
+// Writes the vectors of n atoms, from[index].
 template <class V, class From>
-HOL_NOINLINE void write_vectors(const AtomArray &array, const Atoms<V> &at, const int32_t *slot_of, int32_t n,
+HOL_NOINLINE void write_vectors(const AtomArray &array, const Atoms<V> &at, const int32_t *index_of, int32_t n,
                                 const From from, const Written<V> what) {
     if (!what.all() || at.layout == elements) {
         for (int32_t k = 0; k < n; ++k) {
             const unsigned which = what.lanes_of(k);
             if (!which) continue;
-            const Vector3<V> a = from[slot_of[k]];
+            const Vector3<V> a = from[index_of[k]];
             write(array, at, k, what.add ? read(array, at, k) + a : a, which);
         }
         return;
@@ -136,14 +137,14 @@ HOL_NOINLINE void write_vectors(const AtomArray &array, const Atoms<V> &at, cons
         first = for_groups(array, at, n, [&](int32_t k, double **p) HOL_FORCED {
             Vector3<V> a[atoms_at_once];
             HOL_UNROLL
-            for (int j = 0; j < atoms_at_once; ++j) a[j] = from[slot_of[k + j]];
+            for (int j = 0; j < atoms_at_once; ++j) a[j] = from[index_of[k + j]];
             if (what.add)
                 add_elements<3 * atoms_at_once>(p, nullptr, 0, a);
             else
                 write_elements<3 * atoms_at_once>(p, a);
         });
     for_rows(array, at, first, n, [&](int32_t k, double **p) HOL_FORCED {
-        Vector3<V> a = from[slot_of[k]], before;
+        Vector3<V> a = from[index_of[k]], before;
         if (what.add) {
             read_rows(p, before);
             a = before + a;
@@ -152,16 +153,16 @@ HOL_NOINLINE void write_vectors(const AtomArray &array, const Atoms<V> &at, cons
     });
 }
 
-// The displacement of the atom in a slot: w times what pulls it, zeros as +0.
+// The displacement of the atom at an index: w times what pulls it, zeros as +0.
 template <class V>
 struct Displacements {
-    Slots<V> pull;
+    ByIndex<V> pull;
     const V *w;
-    HOL_FORCED Vector3<V> operator[](int64_t slot) const { return add_times(Vector3<V>{}, w[slot], pull[slot]); }
+    HOL_FORCED Vector3<V> operator[](int64_t index) const { return add_times(Vector3<V>{}, w[index], pull[index]); }
 };
-// Moves n atoms by moves[slot], and their velocities with them.
+// Moves n atoms by moves[index], and their velocities with them.
 template <class V, class Moves>
-HOL_NOINLINE void move_vectors(const PositionsCall &call, const Atoms<V> &at, const int32_t *slot_of, int32_t n,
+HOL_NOINLINE void move_vectors(const PositionsCall &call, const Atoms<V> &at, const int32_t *index_of, int32_t n,
                                const Moves moves, const Written<V> what) {
     const double per_dt = 1 / call.dt;
     const V factor = Width<V>::all(per_dt);
@@ -183,7 +184,7 @@ HOL_NOINLINE void move_vectors(const PositionsCall &call, const Atoms<V> &at, co
         const MaskOf<V> moved = Width<V>::of_bits(what.which);
         const V still = Width<V>::all(-0.0);
         return move_rows(0, [&](int32_t k) HOL_FORCED {
-            const Vector3<V> a = moves[slot_of[k]];
+            const Vector3<V> a = moves[index_of[k]];
             return Vector3<V>{select(moved, a.x, still), select(moved, a.y, still), select(moved, a.z, still)};
         });
     }
@@ -191,7 +192,7 @@ HOL_NOINLINE void move_vectors(const PositionsCall &call, const Atoms<V> &at, co
         for (int32_t k = 0; k < n; ++k) {
             const unsigned which = what.lanes_of(k);
             if (!which) continue;
-            const Vector3<V> a = moves[slot_of[k]];
+            const Vector3<V> a = moves[index_of[k]];
             write(call.r, at, k, read(call.r, at, k) + a, which);
             if (call.v.x) write(call.v, at, k, add_times(read(call.v, at, k), factor, a), which);
         }
@@ -203,12 +204,12 @@ HOL_NOINLINE void move_vectors(const PositionsCall &call, const Atoms<V> &at, co
             double *v[Width<V>::lanes];
             Vector3<V> a[atoms_at_once];
             HOL_UNROLL
-            for (int j = 0; j < atoms_at_once; ++j) a[j] = moves[slot_of[k + j]];
+            for (int j = 0; j < atoms_at_once; ++j) a[j] = moves[index_of[k + j]];
             if (!call.v.x) return add_elements<3 * atoms_at_once>(r, nullptr, 0, a);
             rows_from(call.v, at, k, v);
             add_elements<3 * atoms_at_once>(r, v, per_dt, a);
         });
-    move_rows(first, [&](int32_t k) HOL_FORCED { return moves[slot_of[k]]; });
+    move_rows(first, [&](int32_t k) HOL_FORCED { return moves[index_of[k]]; });
 }
 
 }  // namespace holonomic::HOL_ISA::graph

@@ -17,7 +17,7 @@ namespace holonomic::HOL_ISA::graph {
 // That many count as right.
 HOL_INLINE double most_uncertain(int32_t n_bonds) { return 2 * (16 + __builtin_sqrt(n_bonds)); }
 
-// Of a bond at its place.
+// Of a bond at its index.
 template <class V>
 struct MetricRow {
     Vector3<V> d, low;  // low: what rounding leaves off d
@@ -37,9 +37,9 @@ struct Metric {
     const MoleculeLane *const lane;
     const int used;
     const Atoms<V> at;
-    MetricRow<V> *const row;  // [n_bonds] by place
-    V *const w, *const pair;  // [n_atoms] by slot; [n_pairs] multipliers among the children of an atom
-    Vector3<V> *const r;      // [n_atoms] by slot: positions, then forces
+    MetricRow<V> *const row;  // [n_bonds] by bond index
+    V *const w, *const pair;  // [n_atoms] by index; [n_pairs] multipliers among the children of an atom
+    Vector3<V> *const r;      // [n_atoms] by index: positions, then forces
     const bool logs;
     const double per_uncertain;
     V least = Width<V>::all(1);  // negative where plain arithmetic may not do
@@ -57,10 +57,10 @@ struct Metric {
           per_uncertain(1 / most_uncertain(elimination.n_bonds)) {}
 
     void read_atoms() {
-        masses_by_slot(s, lane, w);
-        read_vectors(call.r, at, s.slot_of, s.n_atoms, Slots<V>(r));
+        masses_by_index(s, lane, w);
+        read_vectors(call.r, at, s.index_of, s.n_atoms, ByIndex<V>(r));
     }
-    // Between two slots; E is that of the second atom alone. Far from where squares and their products over- or
+    // Between two indices; E is that of the second atom alone. Far from where squares and their products over- or
     // underflow.
     HOL_FORCED void make(MetricRow<V> &x, int32_t from, int32_t to) {
         unrounded_bond(call.box, r[from], r[to], x.d, x.low);
@@ -126,7 +126,7 @@ struct Metric {
         }
         const Vector3<V> *const force = r;
         if (call.force.x && which)
-            write_vectors(call.force, at, s.slot_of, s.n_atoms, force, Written<V>{which, nullptr, lane, call.add});
+            write_vectors(call.force, at, s.index_of, s.n_atoms, force, Written<V>{which, nullptr, lane, call.add});
     }
 };
 

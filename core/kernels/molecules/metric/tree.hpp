@@ -21,43 +21,43 @@ struct TreeMetric : Metric<V> {
     // Returns the lanes that plain arithmetic answers for.
     MaskOf<V> solve() {
         this->read_atoms();
-        for (int32_t slot = 0; slot < s.n_tree; ++slot) this->make(row[slot], s.parent[slot], slot);
-        for (int32_t slot = 0; slot < s.n_atoms; ++slot) {
-            const int k = children(slot);
-            if (slot == s.n_tree)
-                up<1, true>(slot, k);
+        for (int32_t index = 0; index < s.n_tree; ++index) this->make(row[index], s.parent[index], index);
+        for (int32_t index = 0; index < s.n_atoms; ++index) {
+            const int k = children(index);
+            if (index == s.n_tree)
+                up<1, true>(index, k);
             else if (k > 0)
-                choose_few<1>(k, [&](auto known) HOL_FORCED { up<known, false>(slot, k); });
+                choose_few<1>(k, [&](auto known) HOL_FORCED { up<known, false>(index, k); });
         }
         V sum = {};
-        for (int32_t slot = s.n_atoms; this->call.force.x && slot-- > 0;) {
-            const int k = children(slot);
-            if (slot == s.n_tree)
-                down<1, true>(slot, k);
+        for (int32_t index = s.n_atoms; this->call.force.x && index-- > 0;) {
+            const int k = children(index);
+            if (index == s.n_tree)
+                down<1, true>(index, k);
             else if (k > 0)
-                choose_few<1>(k, [&](auto known) HOL_FORCED { down<known, false>(slot, k); });
-            r[slot] = Vector3<V>{};
-            if (slot < s.n_tree) {
-                sum = sum + this->turn(row[slot]);
-                r[slot] = row[slot].normal;
-                r[s.parent[slot]] = r[s.parent[slot]] - row[slot].normal;
+                choose_few<1>(k, [&](auto known) HOL_FORCED { down<known, false>(index, k); });
+            r[index] = Vector3<V>{};
+            if (index < s.n_tree) {
+                sum = sum + this->turn(row[index]);
+                r[index] = row[index].normal;
+                r[s.parent[index]] = r[s.parent[index]] - row[index].normal;
             }
         }
         return this->finish(sum);
     }
 
 private:
-    int children(int32_t slot) const { return s.child_start[slot + 1] - s.child_start[slot]; }
-    const int32_t *children_of(int32_t slot) const { return s.child + s.child_start[slot]; }
+    int children(int32_t index) const { return s.child_start[index + 1] - s.child_start[index]; }
+    const int32_t *children_of(int32_t index) const { return s.child + s.child_start[index]; }
 
     template <int known, bool top>
-    HOL_FORCED void up(int32_t slot, int count_of) {
+    HOL_FORCED void up(int32_t index, int count_of) {
         constexpr int most = known > 0 ? known : most_decomposed;
         const int k = known > 0 ? known : count_of;
-        const int32_t *const child = children_of(slot);
-        const V w0 = w[slot];
+        const int32_t *const child = children_of(index);
+        const V w0 = w[index];
         V S[pairs_to(most)], F[most], z[most], l[most];
-        V *const m = pair + s.pair_start[slot];
+        V *const m = pair + s.pair_start[index];
         for (int a = 0; a < k; ++a) {
             const MetricRow<V> &x = row[child[a]];
             for (int b = 0; b < a; ++b) S[pair_of(a + 1, b)] = w0 * product(x, row[child[b]]);
@@ -82,7 +82,7 @@ private:
             row[child[0]].l = V{};
             return;
         }
-        MetricRow<V> &e = row[slot];
+        MetricRow<V> &e = row[index];
         V per_pivot[most], y[most], taken = {};
         for (int a = 0; a < k; ++a) {
             per_pivot[a] = row[child[a]].r;
@@ -110,20 +110,20 @@ private:
 
     // H of the bonds below an atom, and what they and the one above pull at each other.
     template <int known, bool top>
-    HOL_FORCED void down(int32_t slot, int count_of) {
+    HOL_FORCED void down(int32_t index, int count_of) {
         constexpr int most = known > 0 ? known : most_decomposed;
         const int k = known > 0 ? known : count_of;
-        const int32_t *const child = children_of(slot);
-        const V w0 = w[slot], above = top ? V{} : row[slot].H;
+        const int32_t *const child = children_of(index);
+        const V w0 = w[index], above = top ? V{} : row[index].H;
         V H[pairs_to(most)], off[pairs_to(most)], beside[most], off_beside[most];  // and of H_ce
-        inverse<most>(k, child, pair + s.pair_start[slot], H);
+        inverse<most>(k, child, pair + s.pair_start[index], H);
         if (known == 1) {
             MetricRow<V> &x = row[child[0]];
-            const V off_r = x.r * x.rounded, of_above = top ? V{} : mul_add(above, off_r, row[slot].off);
+            const V off_r = x.r * x.rounded, of_above = top ? V{} : mul_add(above, off_r, row[index].off);
             off_beside[0] = abs(x.l) * of_above;
             x.off = mul_add(x.l * x.l, of_above + above * off_r, x.r * off_r);
         } else {
-            uncertain<most>(slot, k, H, off, off_beside);
+            uncertain<most>(index, k, H, off, off_beside);
         }
         for (int a = 0; a < k; ++a) {
             MetricRow<V> &x = row[child[a]];
@@ -139,7 +139,7 @@ private:
                 MetricRow<V> &x = row[child[0]];
                 const Vector3<V> n = x.normal;
                 x.normal = Vector3<V>{};
-                couple(x, row[slot], n, -(w0 * beside[0]), w0 * off_beside[0]);
+                couple(x, row[index], n, -(w0 * beside[0]), w0 * off_beside[0]);
             }
             return;
         }
@@ -149,7 +149,7 @@ private:
                 couple(x, row[child[b]], normal(x, row[child[b]]), w0 * H[pair_of(a + 1, b)],
                        w0 * off[pair_of(a + 1, b)]);
             // The bond above points to the atom.
-            couple(x, row[slot], normal(x, row[slot]), -(w0 * beside[a]), w0 * off_beside[a]);
+            couple(x, row[index], normal(x, row[index]), -(w0 * beside[a]), w0 * off_beside[a]);
         }
     }
 
@@ -178,9 +178,9 @@ private:
     // What a rounding of each term of |L| P |L|^T = T, and of what E was made of, may do to H between different bonds:
     // |S^-1| T |S^-1| and what comes of l by H_ee. Products d.d' are right to a rounding of themselves.
     template <int most>
-    __attribute__((noinline)) void uncertain(int32_t slot, int k, const V *inverse, V *off, V *off_beside) const {
-        const int32_t *const child = children_of(slot);
-        const V *const m = pair + s.pair_start[slot], above = row[slot].H, off_above = row[slot].off;
+    __attribute__((noinline)) void uncertain(int32_t index, int k, const V *inverse, V *off, V *off_beside) const {
+        const int32_t *const child = children_of(index);
+        const V *const m = pair + s.pair_start[index], above = row[index].H, off_above = row[index].off;
         const auto of_inverse = [&](int a, int b)
                                     HOL_FORCED { return abs(inverse[a > b ? pair_of(a + 1, b) : pair_of(b + 1, a)]); };
         V T[most][most], B[most][most], of_l[most];  // |S^-1| T, and B |l|

@@ -203,7 +203,7 @@ struct Ends {
             Pair3<V> sum = {};
             V size = {};
             for (int32_t i = 0, u = g.unknown; i < g.n_own; ++i, u += g.step) {
-                const Pair3<V> pull = product_pairs(gather<V>(t, s.place_of + u), b.get<V>(u));
+                const Pair3<V> pull = product_pairs(gather<V>(t, s.bond_index_of + u), b.get<V>(u));
                 sum = add_pairs(sum, pull);
                 size = size + sqrt(mul_add(pull.x.hi, pull.x.hi, mul_add(pull.y.hi, pull.y.hi, pull.z.hi * pull.z.hi)));
             }

@@ -21,10 +21,10 @@ struct NetEquations {
     const AtomArray &coordinates;
     const Inputs &in;
     const int terms;
-    Net3 r, f, G;                     // of the rest: positions, w f, pulls
-    Net3 v, d;                        // velocities: of the rest, too, if they are not `rates`; bonds
-    double *t, *side, *size_of_side;  // multipliers; right-hand sides, and the sizes of their terms
-    Pair3<double> *a;                 // of nodes and atoms of trees, in twice the precision
+    Net3 r, f, G;                   // of the rest: positions, w f, pulls
+    Net3 v, d;                      // velocities: of the rest, too, if they are not `rates`; bonds
+    double *t, *rhs, *size_of_rhs;  // multipliers; right-hand sides, and the sizes of their terms
+    Pair3<double> *a;               // of nodes and atoms of trees, in twice the precision
 
     static int64_t values_of_factor(const NetworkPlan &s) {
         return Net::values_of_factor(s) + 3 * in_fours(n_rest(s)) + 3 * in_fours(s.n_bonds);
@@ -33,13 +33,13 @@ struct NetEquations {
         return Net::values(s) + 15 * in_fours(n_rest(s)) + 3 * in_fours(s.n_atoms) + 6 * in_fours(s.n_bonds);
     }
     NetEquations(const NetworkPlan &plan, const MoleculeLane &l, bool packed, const LongTeam *team, const Box &b,
-                 const AtomArray &positions, const Inputs &inputs, int sides, Memory<double> &of_factor,
+                 const AtomArray &positions, const Inputs &inputs, int rhs_terms, Memory<double> &of_factor,
                  Memory<double> &memory)
         : net(plan, l, packed, team, of_factor, memory), s(plan), box(b), coordinates(positions), in(inputs),
-          terms(sides), r(Net3::take(of_factor, n_rest(s), s.first_node)),
+          terms(rhs_terms), r(Net3::take(of_factor, n_rest(s), s.first_node)),
           f(Net3::take(memory, n_rest(s), s.first_node)), G(Net3::take(memory, n_rest(s), s.first_node)),
           v(Net3::take(memory, s.n_atoms)), d(Net3::take(of_factor, s.n_bonds)), t(memory.values(in_fours(s.n_bonds))),
-          side(memory.values(in_fours(s.n_bonds))), size_of_side(memory.values(in_fours(s.n_bonds))),
+          rhs(memory.values(in_fours(s.n_bonds))), size_of_rhs(memory.values(in_fours(s.n_bonds))),
           a(reinterpret_cast<Pair3<double> *>(memory.values(6 * in_fours(n_rest(s))))) {}
 
     bool has(int wanted) const { return (terms & wanted) != 0; }
@@ -72,7 +72,7 @@ struct NetEquations {
         });
     }
     void find_equations_of_trees() const {
-        for (int32_t k = s.first_tree_place; k < s.n_bonds; ++k) {
+        for (int32_t k = s.first_tree_bond; k < s.n_bonds; ++k) {
             const Vector3<double> bond = net.bond_between(box, r.get<double>(s.from[k]), r.get<double>(s.to[k]));
             d.set(k, bond);
             find_side_of_tree(k, bond);
@@ -80,7 +80,7 @@ struct NetEquations {
     }
     HOL_FORCED void find_side_of_tree(int32_t k, const Vector3<double> &bond) const {
         const int32_t i = s.from[k], j = s.to[k];
-        find_side<double>(k, bond, {v.get<double>(i), f.get<double>(i)}, {v.get<double>(j), f.get<double>(j)});
+        find_rhs<double>(k, bond, {v.get<double>(i), f.get<double>(i)}, {v.get<double>(j), f.get<double>(j)});
     }
     // Of strands, as the caller has their atoms.
     template <class V>
@@ -99,10 +99,10 @@ struct NetEquations {
                 return Atom{read(coordinates), read_terms<V>(read, net.read_masses<V>(site))};
             },
             [&]() HOL_FORCED { return at_node(1); },
-            [&](int32_t place, const Atom &from, const Atom &to) HOL_FORCED {
+            [&](int32_t bond_index, const Atom &from, const Atom &to) HOL_FORCED {
                 const Vector3<V> bond = net.bond_between(box, from.r, to.r);
-                d.set(place, bond);
-                find_side<V>(place, bond, from.terms, to.terms);
+                d.set(bond_index, bond);
+                find_rhs<V>(bond_index, bond, from.terms, to.terms);
             });
     }
     // Right-hand sides alone, where bonds, inverse masses and positions of the rest are kept: of the rest; of strands.
@@ -115,7 +115,7 @@ struct NetEquations {
                     f.set(i, atom.f);
                 });
             });
-        for (int32_t k = s.first_tree_place; k < s.n_bonds; ++k) find_side_of_tree(k, d.get<double>(k));
+        for (int32_t k = s.first_tree_bond; k < s.n_bonds; ++k) find_side_of_tree(k, d.get<double>(k));
     }
     template <class V>
     HOL_FORCED void find_sides(const NetStrands &g) const {
@@ -123,8 +123,8 @@ struct NetEquations {
             g, [&]() HOL_FORCED { return terms_at_node<V>(g, 0); },
             [&](int32_t site, int32_t) HOL_FORCED { return kept_terms_at<V>(site); },
             [&]() HOL_FORCED { return terms_at_node<V>(g, 1); },
-            [&](int32_t place, const NetTerms<V> &from, const NetTerms<V> &to)
-                HOL_FORCED { find_side<V>(place, d.get<V>(place), from, to); });
+            [&](int32_t bond_index, const NetTerms<V> &from, const NetTerms<V> &to)
+                HOL_FORCED { find_rhs<V>(bond_index, d.get<V>(bond_index), from, to); });
     }
     template <class V>
     HOL_FORCED NetTerms<V> kept_terms_at(int32_t site) const {
@@ -134,8 +134,8 @@ struct NetEquations {
 
     // A right-hand side d.(x_j - x_i) + |v_j - v_i|^2, and the sum of its terms' sizes.
     template <class V>
-    HOL_FORCED void find_side(int32_t place, const Vector3<V> &bond, const NetTerms<V> &from,
-                              const NetTerms<V> &to) const {
+    HOL_FORCED void find_rhs(int32_t bond_index, const Vector3<V> &bond, const NetTerms<V> &from,
+                             const NetTerms<V> &to) const {
         V value = {}, size = {};
         if (has(pulls | rates)) {
             const Vector3<V> &x = has(pulls) ? from.f : from.v, &y = has(pulls) ? to.f : to.v;
@@ -149,20 +149,20 @@ struct NetEquations {
             size = square + size;
         }
         if (in.rhs || in.strain) {
-            const V more = given_to<V>(place);
+            const V more = given_to<V>(bond_index);
             value = value + more;
             size = size + abs(more);
         }
-        net.fetch_ahead(place, side, size_of_side, t, d.x, d.y, d.z);
-        store_any(side + place, value);
-        store_any(size_of_side + place, size);
-        store_any(t + place, value);
+        net.fetch_ahead(bond_index, rhs, size_of_rhs, t, d.x, d.y, d.z);
+        store_any(rhs + bond_index, value);
+        store_any(size_of_rhs + bond_index, size);
+        store_any(t + bond_index, value);
     }
     // Of velocities that have been changed since.
     template <class V>
-    HOL_FORCED void find_rate(int32_t place, const Vector3<V> &from, const Vector3<V> &to) const {
-        const V value = dot(d.get<V>(place), to - from);
-        store_any(t + place, in.strain ? value + given_to<V>(place) : value);
+    HOL_FORCED void find_rate(int32_t bond_index, const Vector3<V> &from, const Vector3<V> &to) const {
+        const V value = dot(d.get<V>(bond_index), to - from);
+        store_any(t + bond_index, in.strain ? value + given_to<V>(bond_index) : value);
     }
 
     template <class V>
@@ -204,11 +204,11 @@ struct NetEquations {
         return sum.hi + sum.lo;
     }
     template <class V>
-    __attribute__((noinline)) V given_to(int32_t place) const {
-        if (in.rhs) return 0.5 * net.of_bonds<V>(in.rhs, place);
+    __attribute__((noinline)) V given_to(int32_t bond_index) const {
+        if (in.rhs) return 0.5 * net.of_bonds<V>(in.rhs, bond_index);
         V all = {};
         for (int i = 0; i < Width<V>::lanes; ++i)
-            Width<V>::set(all, i, stretching(in.strain, d.get<double>(place + i)));
+            Width<V>::set(all, i, stretching(in.strain, d.get<double>(bond_index + i)));
         return all;
     }
 };

@@ -16,7 +16,7 @@ constexpr double least_offer = 1e-10;
 struct NetFactor {
     const Net &net;
     const NetworkPlan &s;
-    Net3 b;  // of all places; D is given to factorize()
+    Net3 b;  // of all bonds; D is given to factorize()
     double *to_last,
         *from_last;  // multipliers of a strand's next bond: what it gives to this one's t, and gets of its y
     double *to_first, *from_first;  // the same of the first bond
@@ -78,14 +78,14 @@ struct NetFactor {
     }
     template <class V>
     HOL_FORCED void take_up(const NetStrands &g, double *y) const {
-        V last = {}, first = load_any<V>(y + g.place), before = {}, share = {};
+        V last = {}, first = load_any<V>(y + g.bond_index), before = {}, share = {};
         for (int32_t k = 1; k < g.length; ++k) {
-            const int32_t place = g.place + k * g.step;
-            last = mul_add(share, before, load_any<V>(y + place));
+            const int32_t bond_index = g.bond_index + k * g.step;
+            last = mul_add(share, before, load_any<V>(y + bond_index));
             if (k + 1 == g.length) break;
-            store_any(y + place, last);
-            first = first - load_any<V>(from_first + place) * last;
-            share = load_any<V>(from_last + place);
+            store_any(y + bond_index, last);
+            first = first - load_any<V>(from_first + bond_index) * last;
+            share = load_any<V>(from_last + bond_index);
             before = last;
         }
         net.to_end(g, 0, first, unknowns.y);
@@ -93,7 +93,7 @@ struct NetFactor {
     }
     // From the unknowns, down to all bonds: y becomes t. The rest: ends of strands, and trees.
     __attribute__((noinline)) void take_down_rest(double *y) const {
-        for (int32_t u = 0; u < s.n_unknowns; ++u) y[s.place_of[u]] = unknowns.x[u];
+        for (int32_t u = 0; u < s.n_unknowns; ++u) y[s.bond_index_of[u]] = unknowns.x[u];
         for (int32_t n = 0; n < s.n_nodes && s.n_tree > 0; ++n) {
             if (s.child_start[n] == s.child_start[n + 1]) continue;
             if (stiff.is[n])
@@ -108,15 +108,15 @@ struct NetFactor {
     }
     template <class V>
     HOL_FORCED void take_down(const NetStrands &g, double *y) const {
-        const V first = load_any<V>(y + g.place);
-        V next = load_any<V>(y + g.place + (g.length - 1) * g.step);
+        const V first = load_any<V>(y + g.bond_index);
+        V next = load_any<V>(y + g.bond_index + (g.length - 1) * g.step);
         for (int32_t k = g.length - 2; k > 0; --k) {
-            const int32_t place = g.place + k * g.step;
-            net.fetch_ahead(place, y, per_pivot, to_last, to_first);
-            next = mul_add(
-                load_any<V>(to_last + place), next,
-                load_any<V>(y + place) * load_any<V>(per_pivot + place) - load_any<V>(to_first + place) * first);
-            store_any(y + place, next);
+            const int32_t bond_index = g.bond_index + k * g.step;
+            net.fetch_ahead(bond_index, y, per_pivot, to_last, to_first);
+            next = mul_add(load_any<V>(to_last + bond_index), next,
+                           load_any<V>(y + bond_index) * load_any<V>(per_pivot + bond_index) -
+                               load_any<V>(to_first + bond_index) * first);
+            store_any(y + bond_index, next);
         }
     }
 
@@ -144,10 +144,10 @@ struct NetFactor {
             const int32_t site = s.first_node + n;
             const Vector3<double> zero = {};
             Pair3<double> sum = pairs_of(G.get<double>(site), tension ? low.get<double>(site) : zero);
-            net.for_other_bonds(n, [&](int32_t place, double sign) HOL_FORCED {
-                const Vector3<double> bond = b.get<double>(place);
-                sum = add_pairs(sum, product_pairs(sign * t[place], bond));
-                if (tension) tension[site] += abs(t[place]) * sqrt(dot(bond, bond));
+            net.for_other_bonds(n, [&](int32_t bond_index, double sign) HOL_FORCED {
+                const Vector3<double> bond = b.get<double>(bond_index);
+                sum = add_pairs(sum, product_pairs(sign * t[bond_index], bond));
+                if (tension) tension[site] += abs(t[bond_index]) * sqrt(dot(bond, bond));
             });
             G.set(site, rounded(sum));
         }
@@ -166,22 +166,22 @@ private:
     // each pivot loses when it is eliminated before and not after those between: P' / P.
     template <class V>
     HOL_FORCED void factorize_strands(const NetStrands &g, const Net3 &D, double *y) const {
-        Vector3<V> Dk = D.get<V>(g.place), bk = b.get<V>(g.place);
-        V first = load_any<V>(y + g.place);
+        Vector3<V> Dk = D.get<V>(g.bond_index), bk = b.get<V>(g.bond_index);
+        V first = load_any<V>(y + g.bond_index);
         unknowns.set_bonds(g, 0, Dk, bk);
         if (g.length == 1) return net.to_end(g, 0, first, unknowns.y);
         V w = load_any<V>(net.w + g.site);
         const Vector3<V> D0 = Dk, b0 = bk;
-        Dk = D.get<V>(g.place + g.step);
-        bk = b.get<V>(g.place + g.step);
+        Dk = D.get<V>(g.bond_index + g.step);
+        bk = b.get<V>(g.bond_index + g.step);
         const V whole = w * dot(D0, b0), one = Width<V>::all(1);
         V E0 = whole, row = -(w * dot(D0, bk)), column = -(w * dot(Dk, b0)), q = dot(Dk, bk), E = w * q,
-          beyond = w * dot(cross(D0, Dk), cross(b0, bk)) / dot(D0, b0), yk = load_any<V>(y + g.place + g.step);
+          beyond = w * dot(cross(D0, Dk), cross(b0, bk)) / dot(D0, b0), yk = load_any<V>(y + g.bond_index + g.step);
         for (int32_t k = 1; k + 1 < g.length; ++k) {
-            const int32_t place = g.place + k * g.step;
+            const int32_t bond_index = g.bond_index + k * g.step;
             w = load_any<V>(net.w + g.site + k * g.step);
-            const Vector3<V> Dn = D.get<V>(place + g.step), bn = b.get<V>(place + g.step);
-            net.fetch_ahead(place, per_pivot, to_last, to_first);
+            const Vector3<V> Dn = D.get<V>(bond_index + g.step), bn = b.get<V>(bond_index + g.step);
+            net.fetch_ahead(bond_index, per_pivot, to_last, to_first);
             const V P_beyond = mul_add(w, q, beyond);
             const V per = one / mul_add(w, q, E), next = dot(Dn, bn), part = w * per;
             const V up = part * dot(Dn, bk), down = part * dot(Dk, bn), from = row * per, to = column * per;
@@ -189,13 +189,13 @@ private:
             E0 = E0 * (P_beyond * per);
             beyond = w * mul_add(next, beyond, X) / P_beyond;
             first = first - from * yk;
-            store_any(y + place, yk);
-            store_any(per_pivot + place, per);
-            store_any(to_last + place, down);
-            store_any(to_first + place, to);
-            store_any(from_last + place, up);
-            store_any(from_first + place, from);
-            yk = mul_add(up, yk, load_any<V>(y + place + g.step));
+            store_any(y + bond_index, yk);
+            store_any(per_pivot + bond_index, per);
+            store_any(to_last + bond_index, down);
+            store_any(to_first + bond_index, to);
+            store_any(from_last + bond_index, up);
+            store_any(from_first + bond_index, from);
+            yk = mul_add(up, yk, load_any<V>(y + bond_index + g.step));
             row = row * down;
             column = column * up;
             E = part * mul_add(next, E, X);
@@ -217,13 +217,13 @@ private:
 
     void factorize_trees(const Net3 &D, double *y) const {
         for (int32_t i = 0; i < s.n_tree; ++i) {
-            const int32_t e = s.first_tree_place + i, n = n_children(s.n_nodes + i);
+            const int32_t e = s.first_tree_bond + i, n = n_children(s.n_nodes + i);
             const Vector3<double> De = D.get<double>(e), be = b.get<double>(e);
             const double w = net.w[s.first_tree + i], q = dot(De, be);
             if (n == 0) {
                 to_first[e] = w * q;
             } else if (n == 1) {
-                const int32_t c = s.first_tree_place + s.child[first_child(s.n_nodes + i)];
+                const int32_t c = s.first_tree_bond + s.child[first_child(s.n_nodes + i)];
                 const Vector3<double> Dc = D.get<double>(c), bc = b.get<double>(c);
                 const double E = to_first[c], per = 1 / mul_add(w, dot(Dc, bc), E), part = w * per;
                 per_pivot[c] = per;
@@ -251,7 +251,7 @@ private:
         Tensor<double> mass = diagonal_tensor(w);
         bool is_stiff = false;
         for (int32_t j = s.child_start[number]; j < s.child_start[number + 1]; ++j) {
-            const int32_t c = s.first_tree_place + s.child[j];
+            const int32_t c = s.first_tree_bond + s.child[j];
             const Vector3<double> Dc = D.get<double>(c), bc = b.get<double>(c);
             const double E = to_first[c];
             is_stiff = is_stiff || E < stiff_offer * (w * dot(Dc, bc));
@@ -264,7 +264,7 @@ private:
     __attribute__((noinline)) Tensor<double> mass_of_stiff(int32_t number, double w, const Net3 &D) const {
         stiff.begin(number, w);
         for (int32_t j = s.child_start[number]; j < s.child_start[number + 1]; ++j) {
-            const int32_t c = s.first_tree_place + s.child[j];
+            const int32_t c = s.first_tree_bond + s.child[j];
             const Vector3<double> Dc = D.get<double>(c), bc = b.get<double>(c);
             const double E = max(to_first[c], least_stiff_offer * (w * dot(Dc, bc)));
             per_pivot[c] = 1 / E;
@@ -276,7 +276,7 @@ private:
     Vector3<double> push_of(int32_t number, const double *y) const {
         Vector3<double> sum = {};
         for (int32_t j = s.child_start[number]; j < s.child_start[number + 1]; ++j) {
-            const int32_t c = s.first_tree_place + s.child[j];
+            const int32_t c = s.first_tree_bond + s.child[j];
             sum = add_times(sum, y[c] * per_pivot[c], b.get<double>(c));
         }
         if (stiff.is[number]) push_stiff(number, y);
@@ -285,15 +285,15 @@ private:
     __attribute__((noinline)) void push_stiff(int32_t number, const double *y) const {
         Pair3<double> sum = {};
         for (int32_t j = s.child_start[number]; j < s.child_start[number + 1]; ++j) {
-            const int32_t c = s.first_tree_place + s.child[j];
+            const int32_t c = s.first_tree_bond + s.child[j];
             sum = add_pairs(sum, product_pairs(y[c] * per_pivot[c], b.get<double>(c)));
         }
         stiff.set_push(number, sum);
     }
     void take_up_tree(int32_t i, double *y) const {
-        const int32_t e = s.first_tree_place + i, n = n_children(s.n_nodes + i);
+        const int32_t e = s.first_tree_bond + i, n = n_children(s.n_nodes + i);
         if (n == 1) {
-            const int32_t c = s.first_tree_place + s.child[first_child(s.n_nodes + i)];
+            const int32_t c = s.first_tree_bond + s.child[first_child(s.n_nodes + i)];
             y[e] = mul_add(from_last[c], y[c], y[e]);
         } else if (n > 1) {
             push[i] = push_of(s.n_nodes + i, y);
@@ -307,20 +307,20 @@ private:
     // t of the children of an atom that is accelerated so much.
     void solve_children(int32_t number, const Vector3<double> &a, double *t) const {
         for (int32_t j = s.child_start[number]; j < s.child_start[number + 1]; ++j) {
-            const int32_t i = s.child[j], c = s.first_tree_place + i;
+            const int32_t i = s.child[j], c = s.first_tree_bond + i;
             t[c] = (t[c] - dot(unknowns.tree_bond[i], a)) * per_pivot[c];
         }
     }
     __attribute__((noinline)) void solve_stiff_children(int32_t number, const Pair3<double> &a, double *t) const {
         for (int32_t j = s.child_start[number]; j < s.child_start[number + 1]; ++j) {
-            const int32_t i = s.child[j], c = s.first_tree_place + i;
+            const int32_t i = s.child[j], c = s.first_tree_bond + i;
             t[c] = left_of(t[c], unknowns.tree_bond[i], a) * per_pivot[c];
         }
     }
     void take_down_tree(int32_t i, double *t) const {
-        const int32_t e = s.first_tree_place + i, n = n_children(s.n_nodes + i);
+        const int32_t e = s.first_tree_bond + i, n = n_children(s.n_nodes + i);
         if (n == 1) {
-            const int32_t c = s.first_tree_place + s.child[first_child(s.n_nodes + i)];
+            const int32_t c = s.first_tree_bond + s.child[first_child(s.n_nodes + i)];
             t[c] = mul_add(to_last[c], t[e], t[c] * per_pivot[c]);
         } else if (n > 1 && stiff.is[s.n_nodes + i]) {
             solve_stiff_children(s.n_nodes + i,

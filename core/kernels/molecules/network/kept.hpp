@@ -16,7 +16,7 @@ struct KeptNetwork {
 
     void keep(const NetLinear &x) const {
         block[0] = x.make();
-        if (is_good()) x.factor.unknowns.prepare_for_many(NetProof::any_part, x.size_of_side);
+        if (is_good()) x.factor.unknowns.prepare_for_many(NetProof::any_part, x.size_of_rhs);
         block[1] = x.factor.unknowns.direct;
     }
     void lend_to(NetLinear &x) const {

@@ -14,11 +14,11 @@ struct NetLinear : NetProof {
     static constexpr double part_of_rounding = 1. / 256;
 
     NetLinear(const NetworkPlan &plan, const MoleculeLane &l, bool packed, const LongTeam *team, const Box &b,
-              const AtomArray &positions, const Inputs &inputs, int sides, Memory<double> memory)
-        : NetProof(plan, l, packed, team, b, positions, inputs, sides, memory, memory) {}
+              const AtomArray &positions, const Inputs &inputs, int rhs_terms, Memory<double> memory)
+        : NetProof(plan, l, packed, team, b, positions, inputs, rhs_terms, memory, memory) {}
     // Over the memory of factors that are kept.
     NetLinear(const NetworkPlan &plan, const MoleculeLane &l, bool packed, const LongTeam *team, const Box &b,
-              const AtomArray &positions, const Inputs &inputs, int sides, Memory<double> of_factor,
+              const AtomArray &positions, const Inputs &inputs, int rhs_terms, Memory<double> of_factor,
               Memory<double> memory)
         : NetProof(plan, l, packed, team, b, positions, inputs, sides, of_factor, memory) {}
 
@@ -31,17 +31,17 @@ struct NetLinear : NetProof {
         return refine();
     }
 
-    // Solves for what is left in twice the precision; the multipliers so far are kept in `side`, whose terms are not
+    // Solves for what is left in twice the precision; the multipliers so far are kept in `rhs`, whose terms are not
     // needed any more.
     __attribute__((noinline)) bool refine() const {
-        double *const solution = side, *const alone = size_of_side;
+        double *const solution = rhs, *const alone = size_of_rhs;
         bool begun = false;
         const auto keep = [&](auto width, int32_t k, const auto &bond, const auto &mass,
                               const auto &tensions) HOL_FORCED {
             typedef decltype(width) V;
             if (begun) return;
             const Vector3<V> d_k = {bond.x.hi, bond.y.hi, bond.z.hi};
-            store_any(alone + k, load_any<V>(side + k) / (mass * dot(d_k, d_k)));
+            store_any(alone + k, load_any<V>(rhs + k) / (mass * dot(d_k, d_k)));
             store_any(solution + k, load_any<V>(t + k));
             store_any(enough + k, Width<V>::all(part_of_rounding) * hidden_by_rounding(d_k, tensions));
         };
@@ -108,23 +108,23 @@ struct NetLinear : NetProof {
     // Velocities of strands, and their right-hand sides.
     template <class V>
     HOL_FORCED void push(const NetStrands &g) const {
-        StrandPulls<V> along(net, t, d, g.place);
+        StrandPulls<V> along(net, t, d, g.bond_index);
         net.for_bonds(
             g, [&]() HOL_FORCED { return net.at_node<V>(g, 0, v); },
-            [&](int32_t site, int32_t place) HOL_FORCED {
-                const Vector3<V> velocity = pushed(V{}, site, along.before(place));
+            [&](int32_t site, int32_t bond_index) HOL_FORCED {
+                const Vector3<V> velocity = pushed(V{}, site, along.before(bond_index));
                 v.set(site, velocity);
                 return velocity;
             },
             [&]() HOL_FORCED { return net.at_node<V>(g, 1, v); },
-            [&](int32_t place, const Vector3<V> &from, const Vector3<V> &to)
-                HOL_FORCED { find_rate(place, from, to); });
+            [&](int32_t bond_index, const Vector3<V> &from, const Vector3<V> &to)
+                HOL_FORCED { find_rate(bond_index, from, to); });
     }
     // Pushes velocities, and finds multipliers of what that leaves: the pulls of the rest, and what is taken down.
     __attribute__((noinline)) bool project_again() const {
         for_pulls_of_rest([&](auto width, int32_t site, const auto &pull)
                               HOL_FORCED { v.set(site, pushed(width, site, pull)); });
-        for (int32_t k = s.first_tree_place; k < s.n_bonds; ++k)
+        for (int32_t k = s.first_tree_bond; k < s.n_bonds; ++k)
             find_rate(k, v.get<double>(s.from[k]), v.get<double>(s.to[k]));
         factor.take_up_rest(t);
         net.for_parts([&](const NetPart &part) {
@@ -144,14 +144,14 @@ struct NetLinear : NetProof {
     }
     template <class V, class Each>
     HOL_FORCED void for_pulls(const V &width, const NetStrands &g, const Each &each) const {
-        StrandPulls<V>(net, t, d, g.place).for_sites(g, [&](int32_t site, const Vector3<V> &pull) HOL_FORCED {
+        StrandPulls<V>(net, t, d, g.bond_index).for_sites(g, [&](int32_t site, const Vector3<V> &pull) HOL_FORCED {
             each(width, site, pull);
         });
     }
 
     template <bool with_length>
     void write_bonds(const NetPart &part, double scale, double *out, unsigned) const {
-        for (int32_t k = part.first_place; k < part.end_place; ++k) {
+        for (int32_t k = part.first_index; k < part.end_index; ++k) {
             const Vector3<double> bond = d.get<double>(k);
             out[net.number_of_bond(k)] = mul_add(t[k], with_length ? sqrt(dot(bond, bond)) : scale, 0.0);
         }

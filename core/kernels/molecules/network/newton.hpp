@@ -76,7 +76,8 @@ struct NetNewton {
     }
     static double larger(double error, double than) { return than < error || error != error ? error : than; }
     double worst_of_all() const { return largest_in(worst, s.n_shares + 1); }
-    // Calls each(first place, end) for the parts whose largest error is that of all; then error_of() knows their moves.
+    // Calls each(first bond index, end) for the parts whose largest error is that of all; then error_of() knows their
+    // moves.
     template <class Each>
     void for_worst_parts(double error, const Each &each) const {
         for (int32_t i = 0; i <= s.n_shares; ++i) {
@@ -88,7 +89,7 @@ struct NetNewton {
                     for_moves(width, g,
                               [&](auto, int32_t site, const auto &move) HOL_FORCED { moves_of_worst.set(site, move); });
                 });
-            each(part.first_place, part.end_place);
+            each(part.first_index, part.end_index);
         }
     }
 
@@ -101,16 +102,16 @@ struct NetNewton {
     void correct_rest() const {
         if (!found) return;
         factor.take_down_rest(t);
-        for (int32_t k = s.first_tree_place; k < s.n_bonds; ++k) tau[k] += t[k];
-        for (int32_t u = 0; u < s.n_unknowns; ++u) tau[s.place_of[u]] += t[s.place_of[u]];
+        for (int32_t k = s.first_tree_bond; k < s.n_bonds; ++k) tau[k] += t[k];
+        for (int32_t u = 0; u < s.n_unknowns; ++u) tau[s.bond_index_of[u]] += t[s.bond_index_of[u]];
     }
     template <class V>
     HOL_FORCED void correct(const NetStrands &g) const {
         if (!found) return;
         factor.take_down<V>(g, t);
         for (int32_t k = 1; k + 1 < g.length; ++k) {
-            const int32_t place = g.place + k * g.step;
-            store_any(tau + place, load_any<V>(tau + place) + load_any<V>(t + place));
+            const int32_t bond_index = g.bond_index + k * g.step;
+            store_any(tau + bond_index, load_any<V>(tau + bond_index) + load_any<V>(t + bond_index));
         }
     }
     void correct() {
@@ -129,24 +130,25 @@ struct NetNewton {
     }
     template <class V, class Each>
     HOL_FORCED void for_moves(const V &width, const NetStrands &g, const Each &each) const {
-        StrandPulls<V>(net, tau, b, g.place).for_sites(g, [&](int32_t site, const Vector3<V> &pull) HOL_FORCED {
+        StrandPulls<V>(net, tau, b, g.bond_index).for_sites(g, [&](int32_t site, const Vector3<V> &pull) HOL_FORCED {
             each(width, site, load_any<V>(net.w + site) * pull);
         });
     }
-    // Calls each(place, bond) for bonds as tau moves them.
+    // Calls each(bond_index, bond) for bonds as tau moves them.
     template <class V, class Each>
     HOL_FORCED void for_moved_bonds(const NetStrands &g, const Each &each) const {
-        StrandPulls<V> along(net, tau, b, g.place);
+        StrandPulls<V> along(net, tau, b, g.bond_index);
         net.for_bonds(
             g, [&]() HOL_FORCED { return net.at_node<V>(g, 0, moves); },
-            [&](int32_t site, int32_t place) HOL_FORCED { return load_any<V>(net.w + site) * along.before(place); },
+            [&](int32_t site, int32_t bond_index)
+                HOL_FORCED { return load_any<V>(net.w + site) * along.before(bond_index); },
             [&]() HOL_FORCED { return net.at_node<V>(g, 1, moves); },
-            [&](int32_t place, const Vector3<V> &from, const Vector3<V> &to)
-                HOL_FORCED { each(place, moved_bond(place, from, to)); });
+            [&](int32_t bond_index, const Vector3<V> &from, const Vector3<V> &to)
+                HOL_FORCED { each(bond_index, moved_bond(bond_index, from, to)); });
     }
     template <class Each>
     HOL_FORCED void for_moved_bonds_of_trees(const Each &each) const {
-        for (int32_t k = s.first_tree_place; k < s.n_bonds; ++k)
+        for (int32_t k = s.first_tree_bond; k < s.n_bonds; ++k)
             each(k, moved_bond(k, moves.get<double>(s.from[k]), moves.get<double>(s.to[k])));
     }
     template <class V>
@@ -192,11 +194,11 @@ struct NetNewton {
     __attribute__((noinline)) void factorize(ScalarMask) {
         if (moved) find_moves_of_rest();
         const NetPart rest = net.rest();
-        const Net3 of_trees = moved ? rest.of_places() : D;
+        const Net3 of_trees = moved ? rest.by_bond_index() : D;
         if (moved) for_moved_bonds_of_trees([&](int32_t k, const auto &bond) HOL_FORCED { of_trees.set(k, bond); });
-        for (int32_t k = s.first_tree_place; k < s.n_bonds; ++k) measure<true>(k, of_trees.get<double>(k));
+        for (int32_t k = s.first_tree_bond; k < s.n_bonds; ++k) measure<true>(k, of_trees.get<double>(k));
         factor.factorize_rest(of_trees, t);
-        net.for_parts([&](const NetPart &part) { factorize_strands(part, moved ? part.of_places() : D); });
+        net.for_parts([&](const NetPart &part) { factorize_strands(part, moved ? part.by_bond_index() : D); });
         factor.close();
     }
     __attribute__((noinline)) void factorize_strands(const NetPart &part, const Net3 &bonds) const {
@@ -204,8 +206,8 @@ struct NetNewton {
             typedef decltype(width) V;
             if (moved) for_moved_bonds<V>(g, [&](int32_t k, const Vector3<V> &bond) HOL_FORCED { bonds.set(k, bond); });
             for (int32_t k = 0; k < g.length; ++k) {
-                const int32_t place = g.place + k * g.step;
-                measure<true>(place, bonds.get<V>(place));
+                const int32_t bond_index = g.bond_index + k * g.step;
+                measure<true>(bond_index, bonds.get<V>(bond_index));
             }
         });
         factor.factorize(part, bonds, t);

@@ -29,12 +29,12 @@ struct NetPositions : PositionWay<double> {
         HOL_FORCED void take(double a) { rest = max(a, rest); }
     };
     void keep(const NetPart &part, const Largest &coordinate) const {
-        const int32_t n = newton.s.n_shares + 1, n_places = part.end_place - part.first_place;
+        const int32_t n = newton.s.n_shares + 1, n_indices = part.end_index - part.first_index;
         double most = coordinate.rest;
         for (int i = 0; i < W; ++i) most = max(Width<vec>::get(coordinate.lanes, i), most);
         largest[part.share] = most;
-        largest[n + part.share] = largest_of(newton.a2 + part.first_place, n_places);
-        largest[2 * n + part.share] = largest_of(newton.per_a2 + part.first_place, n_places);
+        largest[n + part.share] = largest_of(newton.a2 + part.first_index, n_indices);
+        largest[2 * n + part.share] = largest_of(newton.per_a2 + part.first_index, n_indices);
     }
     // An atom, before and now.
     template <class V>
@@ -49,17 +49,17 @@ struct NetPositions : PositionWay<double> {
     }
     // What is known of a bond; returns its error.
     template <class V>
-    HOL_FORCED V read_bond(int32_t place, const Atom<V> &from, const Atom<V> &to) const {
+    HOL_FORCED V read_bond(int32_t bond_index, const Atom<V> &from, const Atom<V> &to) const {
         const Net &net = newton.net;
         const Vector3<V> bond = net.bond_between(call.box, from.r, to.r);
-        newton.b.set(place, net.bond_between(call.box_ref, from.reference, to.reference));
-        newton.D.set(place, bond);
-        const V a = gather<V>(net.lane.length, newton.s.bond_of + place), a2 = a * a;
-        store_any(newton.a2 + place, a2);
-        store_any(newton.per_a2 + place, Width<V>::all(1) / a2);
-        store_any(newton.tau + place,
-                  call.guess ? Width<V>::all(tau_of_lambda()) * net.of_bonds<V>(call.lambda, place) : V{});
-        return newton.measure<true>(place, bond);
+        newton.b.set(bond_index, net.bond_between(call.box_ref, from.reference, to.reference));
+        newton.D.set(bond_index, bond);
+        const V a = gather<V>(net.lane.length, newton.s.bond_of + bond_index), a2 = a * a;
+        store_any(newton.a2 + bond_index, a2);
+        store_any(newton.per_a2 + bond_index, Width<V>::all(1) / a2);
+        store_any(newton.tau + bond_index,
+                  call.guess ? Width<V>::all(tau_of_lambda()) * net.of_bonds<V>(call.lambda, bond_index) : V{});
+        return newton.measure<true>(bond_index, bond);
     }
     // Reference positions stand where moves will.
     void read_rest() const {
@@ -80,7 +80,7 @@ struct NetPositions : PositionWay<double> {
             const auto atom = [&](int32_t i) {
                 return Atom<double>{newton.moves.get<double>(i), newton.r.get<double>(i)};
             };
-            for (int32_t k = rest.first_place; k < rest.end_place; ++k)
+            for (int32_t k = rest.first_index; k < rest.end_index; ++k)
                 note(read_bond<double>(k, atom(s.from[k]), atom(s.to[k])));
         });
         keep(rest, coordinate);
@@ -104,8 +104,8 @@ struct NetPositions : PositionWay<double> {
                         return atom;
                     },
                     [&]() HOL_FORCED { return at_node(1); },
-                    [&](int32_t place, const Atom<V> &from, const Atom<V> &to)
-                        HOL_FORCED { note(read_bond<V>(place, from, to)); });
+                    [&](int32_t bond_index, const Atom<V> &from, const Atom<V> &to)
+                        HOL_FORCED { note(read_bond<V>(bond_index, from, to)); });
             });
         });
         keep(part, coordinate);

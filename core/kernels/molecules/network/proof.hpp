@@ -12,7 +12,7 @@ struct NetProof : NetEquations {
     // What may be left when all unknowns are taken together, which says nothing of an equation between heavy atoms
     // beside those of light ones.
     static constexpr double any_part = 1e100, next_part = 1e-6;
-    static constexpr int32_t places_of_look = 8;  // so many for each equation that is looked at
+    static constexpr int32_t bonds_of_look = 8;  // so many for each equation that is looked at
 
     double *enough;    // room for equations flagged, for their corrections, and then for what refinement may leave
     double *tension;   // of the rest, by site, sum of |t| |d|
@@ -27,7 +27,7 @@ struct NetProof : NetEquations {
     // bonds do to them, times the bond; the sum of T times inverse masses.
     struct Flagged {
         double left, at_from, at_to, tensions;
-        int32_t place;
+        int32_t bond_index;
     };
     // Those of a part; lost: where there are more than `most`.
     struct Flaggeds {
@@ -52,12 +52,12 @@ struct NetProof : NetEquations {
         const NetProof &of;
         const double *const t;
         Pair3<V> of_bond;
-        HOL_FORCED ExactPulls(const NetProof &proof, const double *multipliers, int32_t place)
-            : of(proof), t(multipliers), of_bond(product_pairs(load_any<V>(t + place), of.d.get<V>(place))) {}
-        HOL_FORCED Vector3<V> before(int32_t place) {
+        HOL_FORCED ExactPulls(const NetProof &proof, const double *multipliers, int32_t bond_index)
+            : of(proof), t(multipliers), of_bond(product_pairs(load_any<V>(t + bond_index), of.d.get<V>(bond_index))) {}
+        HOL_FORCED Vector3<V> before(int32_t bond_index) {
             const Pair3<V> last = of_bond;
-            of.net.fetch_ahead(place, t, of.d.x, of.d.y, of.d.z);
-            of_bond = product_pairs(load_any<V>(t + place), of.d.get<V>(place));
+            of.net.fetch_ahead(bond_index, t, of.d.x, of.d.y, of.d.z);
+            of_bond = product_pairs(load_any<V>(t + bond_index), of.d.get<V>(bond_index));
             return {(of_bond.x.hi - last.x.hi) + (of_bond.x.lo - last.x.lo),
                     (of_bond.y.hi - last.y.hi) + (of_bond.y.lo - last.y.lo),
                     (of_bond.z.hi - last.z.hi) + (of_bond.z.lo - last.z.lo)};
@@ -76,7 +76,7 @@ struct NetProof : NetEquations {
                NetFactor::values(s, true);
     }
     NetProof(const NetworkPlan &plan, const MoleculeLane &l, bool packed, const LongTeam *team, const Box &b,
-             const AtomArray &positions, const Inputs &inputs, int sides, Memory<double> &of_factor,
+             const AtomArray &positions, const Inputs &inputs, int rhs_terms, Memory<double> &of_factor,
              Memory<double> &memory)
         : NetEquations(plan, l, packed, team, b, positions, inputs, sides, of_factor, memory),
           enough(memory.values(in_fours(s.n_bonds))), tension(memory.values(in_fours(n_rest(s))) - s.first_node),
@@ -97,7 +97,7 @@ struct NetProof : NetEquations {
         factor.close();
     }
     // The same where the factors are kept.
-    void load_sides() const {
+    void load_rhs() const {
         find_sides_of_rest();
         factor.take_up_rest(t);
         net.for_parts([&](const NetPart &part) {
@@ -140,10 +140,10 @@ struct NetProof : NetEquations {
     // All multipliers, and whether they are proven.
     __attribute__((noinline)) bool find() const {
         if (is_kept)
-            load_sides();
+            load_rhs();
         else if (!make())
             return false;
-        if (!solve_for(any_part, size_of_side, t)) return false;
+        if (!solve_for(any_part, size_of_rhs, t)) return false;
         prove_all(t, most_left(), true, [](const NetPart &) {});
         return true;
     }
@@ -157,7 +157,7 @@ struct NetProof : NetEquations {
         return sqrt(dot(bond, bond)) * tensions;
     }
 
-    // Takes `multipliers` down, and looks at what they leave of `side`; after(part) follows. look: at what is not
+    // Takes `multipliers` down, and looks at what they leave of `rhs`; after(part) follows. look: at what is not
     // proven, in twice the precision.
     template <class After>
     HOL_FORCED void prove_all(double *multipliers, double most, bool look, const After &after) const {
@@ -188,10 +188,10 @@ struct NetProof : NetEquations {
     __attribute__((noinline)) bool correct() const {
         double *const change = enough;
         const auto begin = [&](const NetPart &part) {
-            for (int32_t k = part.first_place; k < part.end_place; ++k) side[k] = 0;
+            for (int32_t k = part.first_index; k < part.end_index; ++k) rhs[k] = 0;
             const Flagged *const flag = flags_of(part, false).first;
-            for (int32_t i = 0; i < n_flags[part.share]; ++i) side[flag[i].place] = flag[i].left;
-            for (int32_t k = part.first_place; k < part.end_place; ++k) change[k] = side[k];
+            for (int32_t i = 0; i < n_flags[part.share]; ++i) rhs[flag[i].bond_index] = flag[i].left;
+            for (int32_t k = part.first_index; k < part.end_index; ++k) change[k] = rhs[k];
         };
         begin(net.rest());
         factor.take_up_rest(change);
@@ -200,11 +200,11 @@ struct NetProof : NetEquations {
             factor.take_up(part, change);
         });
         factor.add_pushes();
-        if (!solve_for(next_part, size_of_side, change)) return false;
+        if (!solve_for(next_part, size_of_rhs, change)) return false;
         // A change that is a part of its multiplier leaves the terms of the equations what they are.
         prove_all(change, 0.5 * most_left(), false, [&](const NetPart &part) {
             bool small = true;
-            for (int32_t k = part.first_place; k < part.end_place; ++k) {
+            for (int32_t k = part.first_index; k < part.end_index; ++k) {
                 small = small && 8 * abs(change[k]) <= abs(t[k]);
                 t[k] += change[k];
             }
@@ -220,33 +220,34 @@ private:
         return Net3::take(memory, n_rest(s), s.first_node);
     }
     Flaggeds flags_of(const NetPart &part, bool look) const {
-        return {reinterpret_cast<Flagged *>(enough + part.first_place),
-                look ? (part.end_place - part.first_place) / places_of_look : 0, 0, false};
+        return {reinterpret_cast<Flagged *>(enough + part.first_index),
+                look ? (part.end_index - part.first_index) / bonds_of_look : 0, 0, false};
     }
     // Of one equation, or of W: terms are S and what the atoms' accelerations are multiplied by; of these, what the
     // bonds do is no more than S greater.
     template <class V>
-    HOL_FORCED void prove(int32_t place, const Atom<V> &from, const Atom<V> &to, double most, Flaggeds &flags) const {
-        net.fetch_ahead(place, side, size_of_side);
-        const Vector3<V> bond = d.get<V>(place), x = from.w * from.pull, y = to.w * to.pull;
+    HOL_FORCED void prove(int32_t bond_index, const Atom<V> &from, const Atom<V> &to, double most,
+                          Flaggeds &flags) const {
+        net.fetch_ahead(bond_index, rhs, size_of_rhs);
+        const Vector3<V> bond = d.get<V>(bond_index), x = from.w * from.pull, y = to.w * to.pull;
         const V at_x = dot(bond, x), at_y = dot(bond, y), tensions = mul_add(from.w, from.T, to.w * to.T),
-                size = max(load_any<V>(size_of_side + place), abs(at_x) + abs(at_y)),
+                size = max(load_any<V>(size_of_rhs + bond_index), abs(at_x) + abs(at_y)),
                 rounding =
                     0.5 * hidden_by_rounding(bond, tensions) + 4.0 * dot(absolute(bond), absolute(x) + absolute(y)),
-                left = mul_add(Width<V>::all(epsilon), rounding, abs(load_any<V>(side + place) + (at_y - at_x)));
+                left = mul_add(Width<V>::all(epsilon), rounding, abs(load_any<V>(rhs + bond_index) + (at_y - at_x)));
         const MaskOf<V> bad = ~less_equal(left, most * size);
         if (__builtin_expect(!any(bad), 1)) return;
         const auto of_lane = [](const V &all, int i) HOL_FORCED { return Width<V>::get(all, i); };
         for (int i = 0; i < Width<V>::lanes; ++i) {
             if (!(bits(bad) >> i & 1)) continue;
-            __builtin_prefetch(s.from + place + i);
-            __builtin_prefetch(s.to + place + i);
-            flags.note({of_lane(left, i), of_lane(at_x, i), of_lane(at_y, i), of_lane(tensions, i), place + i});
+            __builtin_prefetch(s.from + bond_index + i);
+            __builtin_prefetch(s.to + bond_index + i);
+            flags.note({of_lane(left, i), of_lane(at_x, i), of_lane(at_y, i), of_lane(tensions, i), bond_index + i});
         }
     }
     __attribute__((noinline)) void prove_trees(double most, Flaggeds &flags) const {
         const auto atom = [&](int32_t i) { return Atom<double>{net.w[i], tension[i], G.get<double>(i)}; };
-        for (int32_t k = s.first_tree_place; k < s.n_bonds; ++k)
+        for (int32_t k = s.first_tree_bond; k < s.n_bonds; ++k)
             prove<double>(k, atom(s.from[k]), atom(s.to[k]), most, flags);
     }
     __attribute__((noinline)) void prove(const NetPart &part, const double *multipliers, double most,
@@ -257,19 +258,19 @@ private:
                 return Atom<V>{net.at_node<V>(g, end, net.w), net.at_node<V>(g, end, tension),
                                net.at_node<V>(g, end, G)};
             };
-            ExactPulls<V> along(*this, multipliers, g.place);
+            ExactPulls<V> along(*this, multipliers, g.bond_index);
             V last = along.tension();
             net.for_bonds(
                 g, [&]() HOL_FORCED { return at_node(0); },
-                [&](int32_t site, int32_t place) HOL_FORCED {
-                    const Vector3<V> pull = along.before(place);
+                [&](int32_t site, int32_t bond_index) HOL_FORCED {
+                    const Vector3<V> pull = along.before(bond_index);
                     const V next = along.tension(), T = last + next;
                     last = next;
                     return Atom<V>{load_any<V>(net.w + site), T, pull};
                 },
                 [&]() HOL_FORCED { return at_node(1); },
-                [&](int32_t place, const Atom<V> &from, const Atom<V> &to)
-                    HOL_FORCED { prove<V>(place, from, to, most, flags); });
+                [&](int32_t bond_index, const Atom<V> &from, const Atom<V> &to)
+                    HOL_FORCED { prove<V>(bond_index, from, to, most, flags); });
         });
     }
     // Keeps those that are left with too much. What they need is all over memory, so it is fetched for all of them
@@ -278,7 +279,8 @@ private:
         const int32_t n = flags.lost ? 0 : flags.n;
         flags.n = 0;
         const auto for_ends = [&](const auto &each) {
-            for (int32_t i = 0; i < n; ++i) each(s.from[flags.first[i].place]), each(s.to[flags.first[i].place]);
+            for (int32_t i = 0; i < n; ++i)
+                each(s.from[flags.first[i].bond_index]), each(s.to[flags.first[i].bond_index]);
         };
         for_ends([&](int32_t site) { __builtin_prefetch(s.atom_of + site); });
         for_ends([&](int32_t site) {
@@ -291,9 +293,9 @@ private:
     // With all terms of the equation, the accelerations of its two atoms too; then in twice the precision, from
     // unrounded bonds.
     void look_at(const Flagged &flag, Flaggeds &flags) const {
-        const int32_t k = flag.place, i = s.from[k], j = s.to[k];
+        const int32_t k = flag.bond_index, i = s.from[k], j = s.to[k];
         const Vector3<double> rounded_bond = d.get<double>(k);
-        const double terms_of_all = size_of_side[k] + abs(flag.at_from + dot(rounded_bond, input_of(i))) +
+        const double terms_of_all = size_of_rhs[k] + abs(flag.at_from + dot(rounded_bond, input_of(i))) +
                                     abs(flag.at_to + dot(rounded_bond, input_of(j))),
                      may_be_left = most_left() * terms_of_all,
                      rounding = 16 * (epsilon * epsilon) * hidden_by_rounding(rounded_bond, flag.tensions);

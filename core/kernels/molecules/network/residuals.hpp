@@ -39,13 +39,13 @@ struct NetResiduals {
     double *const left_hi = at_end.r, *const left_lo = at_end.shadow;  // of its equation, but for what nodes do
     Pair3<double> *const a = e.a - s.first_node;                       // of the rest, by site
 
-    // Into t, taken up. Before that keep(width, place, bond, mass, tensions): the sums over the bond's atoms of inverse
-    // masses, and of these times |t| |d| of all their bonds, which `tension` has of the rest.
+    // Into t, taken up. Before that keep(width, bond_index, bond, mass, tensions): the sums over the bond's atoms of
+    // inverse masses, and of these times |t| |d| of all their bonds, which `tension` has of the rest.
     template <class Keep>
     __attribute__((noinline)) void find(const double *tension, const Keep &keep) const {
         net.for_parts([&](const NetPart &part) { find(part, tension, keep); });
         accelerate_rest();
-        net.for_all(s.first_tree_place, s.n_bonds, [&](auto width, int32_t k) HOL_FORCED {
+        net.for_all(s.first_tree_bond, s.n_bonds, [&](auto width, int32_t k) HOL_FORCED {
             typedef decltype(width) V;
             const int32_t *const from = s.from + k, *const to = s.to + k;
             const Pair3<V> bond = e.unrounded_between(gather<V>(e.r, from), gather<V>(e.r, to));
@@ -94,8 +94,8 @@ private:
         return dot_pairs(change, change);
     }
     template <class V>
-    HOL_FORCED void add_given(Pair<V> &sum, int32_t place) const {
-        if (e.in.rhs || e.in.strain) sum = add_pairs(sum, Pair<V>{e.given_to<V>(place), V{}});
+    HOL_FORCED void add_given(Pair<V> &sum, int32_t bond_index) const {
+        if (e.in.rhs || e.in.strain) sum = add_pairs(sum, Pair<V>{e.given_to<V>(bond_index), V{}});
     }
     // Nodes and atoms of trees.
     __attribute__((noinline)) void accelerate_rest() const {
@@ -112,7 +112,7 @@ private:
             const Pair3<V> pull = scale_pairs(load_any<V>(multiplier + u), bond_at<V>(u));
             for (int i = 0; i < Width<V>::lanes; ++i) pull_apart(pull, i, s.node_of[u + i], s.other_node[u + i]);
         });
-        net.for_all(s.first_tree_place, s.n_bonds, [&](auto width, int32_t k) HOL_FORCED {
+        net.for_all(s.first_tree_bond, s.n_bonds, [&](auto width, int32_t k) HOL_FORCED {
             typedef decltype(width) V;
             const int32_t *const from = s.from + k, *const to = s.to + k;
             const Pair3<V> pull =
@@ -146,12 +146,12 @@ private:
             Vector3<V> at_atom = behind(0, e.r, e.coordinates),
                        speed = e.has(squares) ? net.at_node<V>(g, 0, e.v) : zero;
             Pair3<V> from = {}, bond = e.unrounded_between(net.at_node<V>(g, 0, e.r), at_atom),
-                     pull = scale_pairs(load_any<V>(solution + g.place), bond);
+                     pull = scale_pairs(load_any<V>(solution + g.bond_index), bond);
             V w = net.at_node<V>(g, 0, net.w), T = net.at_node<V>(g, 0, tension), own = size_of(pull);
             for (int32_t k = 0; k < g.length; ++k) {
                 const bool last = k + 1 == g.length;
-                const int32_t place = g.place + k * g.step;
-                const V t = load_any<V>(solution + place);
+                const int32_t bond_index = g.bond_index + k * g.step;
+                const V t = load_any<V>(solution + bond_index);
                 Pair3<V> to = {}, next = bond;
                 V wn, Tn;
                 if (!last) {
@@ -160,7 +160,7 @@ private:
                     at_atom = beyond;
                     to =
                         subtract_pairs(pairs_of(e.has(pulls) ? net.read_at<V>(*e.in.f, site_of(k)) : zero, zero), pull);
-                    pull = scale_pairs(load_any<V>(solution + place + g.step), next);
+                    pull = scale_pairs(load_any<V>(solution + bond_index + g.step), next);
                     wn = load_any<V>(net.w + site_of(k));
                     to = scale_pairs(wn, add_pairs(to, pull));
                     if (e.has(rates)) to = add_pairs(to, pairs_of(e.v.get<V>(site_of(k)), zero));
@@ -171,7 +171,7 @@ private:
                     wn = net.at_node<V>(g, 1, net.w);
                     Tn = net.at_node<V>(g, 1, tension);
                 }
-                keep(width, place, bond, w + wn, mul_add(w, T, wn * Tn));
+                keep(width, bond_index, bond, w + wn, mul_add(w, T, wn * Tn));
                 w = wn;
                 T = Tn;
                 Pair<V> sum = dot_pairs(bond, subtract_pairs(to, from));
@@ -180,10 +180,10 @@ private:
                     sum = add_pairs(sum, square_of(speed, faster));
                     speed = faster;
                 }
-                add_given(sum, place);
+                add_given(sum, bond_index);
                 const bool is_end = k == 0 || last;
-                if (is_end) set_end(g, k == 0 ? 0 : 1, place, bond, t, sum);
-                store_any(e.t + place, is_end ? V{} : sum.hi + sum.lo);
+                if (is_end) set_end(g, k == 0 ? 0 : 1, bond_index, bond, t, sum);
+                store_any(e.t + bond_index, is_end ? V{} : sum.hi + sum.lo);
                 from = to;
                 bond = next;
             }
@@ -191,11 +191,11 @@ private:
         factor.take_up(part, e.t);
     }
     template <class V>
-    HOL_FORCED void set_end(const NetStrands &g, int end, int32_t place, const Pair3<V> &bond, const V &t,
+    HOL_FORCED void set_end(const NetStrands &g, int end, int32_t bond_index, const Pair3<V> &bond, const V &t,
                             const Pair<V> &sum) const {
         const V sign = Width<V>::all(end == 0 ? 1 : -1);
         const Vector3<V> hi = {bond.x.hi, bond.y.hi, bond.z.hi}, lo = {bond.x.lo, bond.y.lo, bond.z.lo};
-        net.to_end(g, end, sign * ((hi - e.d.get<V>(place)) + lo), low);
+        net.to_end(g, end, sign * ((hi - e.d.get<V>(bond_index)) + lo), low);
         net.to_end(g, end, t, multiplier);
         net.to_end(g, end, sum.hi, left_hi);
         net.to_end(g, end, sum.lo, left_lo);

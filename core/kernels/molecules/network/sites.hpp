@@ -20,19 +20,19 @@ struct NetSites {
     // Of arrays that are gone through together there are more than a processor follows by itself: what stands so far
     // ahead in each is that of a bond, or an atom, after some 10 others in lanes, where a loop goes upwards.
     template <class... Arrays>
-    HOL_FORCED void fetch_ahead(int32_t place, const Arrays *...array) const {
+    HOL_FORCED void fetch_ahead(int32_t bond_index, const Arrays *...array) const {
         constexpr int32_t ahead = 80;
-        if (far) (__builtin_prefetch(array + place + ahead), ...);
+        if (far) (__builtin_prefetch(array + bond_index + ahead), ...);
     }
-    // Where the bond of a place stands in arrays per bond, and values from there.
-    HOL_FORCED int64_t number_of_bond(int32_t place) const {
-        const int32_t k = s.bond_of[place];
+    // Where the bond of an index stands in arrays per bond, and values from there.
+    HOL_FORCED int64_t number_of_bond(int32_t bond_index) const {
+        const int32_t k = s.bond_of[bond_index];
         return lane.bonds ? lane.bonds[k] : lane.first_bond + k;
     }
     template <class V>
-    HOL_FORCED V of_bonds(const double *values, int32_t place) const {
+    HOL_FORCED V of_bonds(const double *values, int32_t bond_index) const {
         V all = {};
-        for (int i = 0; i < Width<V>::lanes; ++i) Width<V>::set(all, i, values[number_of_bond(place + i)]);
+        for (int i = 0; i < Width<V>::lanes; ++i) Width<V>::set(all, i, values[number_of_bond(bond_index + i)]);
         return all;
     }
     // Where atoms of lanes from this site on stand in packed arrays.

@@ -23,9 +23,9 @@ struct Net : NetSites {
     }
 
     static int64_t values_of_buffer(const NetworkPlan &s) {
-        int32_t most = s.n_bonds - s.first_tree_place;
+        int32_t most = s.n_bonds - s.first_tree_bond;
         for (int32_t i = 0, before = 0; i < s.n_shares; ++i) {
-            const int32_t end = i + 1 < s.n_shares ? s.bundle[s.bundle_start[i + 1]].first_place : s.first_tree_place;
+            const int32_t end = i + 1 < s.n_shares ? s.bundle[s.bundle_start[i + 1]].first_index : s.first_tree_bond;
             most = end - before > most ? end - before : most;
             before = end;
         }
@@ -38,13 +38,13 @@ struct Net : NetSites {
         const int32_t end = s.bundle_start[share + 1];
         const NetworkPlan::Bundle &b = s.bundle[s.bundle_start[share]];
         NetPart p = {share,         s.bundle_start[share], end,      b.first_site, s.first_node,
-                     b.first_place, s.first_tree_place,    of_thread};
+                     b.first_index, s.first_tree_bond,     of_thread};
         if (share + 1 == s.n_shares) return p;
         p.end_site = s.bundle[end].first_site;
-        p.end_place = s.bundle[end].first_place;
+        p.end_index = s.bundle[end].first_index;
         return p;
     }
-    NetPart rest() const { return {s.n_shares, 0, 0, s.first_node, s.n_atoms, s.first_tree_place, s.n_bonds, buffer}; }
+    NetPart rest() const { return {s.n_shares, 0, 0, s.first_node, s.n_atoms, s.first_tree_bond, s.n_bonds, buffer}; }
     bool is_rest(const NetPart &part) const { return part.share == s.n_shares; }
 
     // Calls body(part) for all but the rest, on the threads that there are. One thread begins where it ended the last
@@ -105,7 +105,7 @@ struct Net : NetSites {
             const NetworkPlan::Bundle &b = s.bundle[i];
             int32_t j = 0;
             const auto strands = [&] {
-                return NetStrands{b.length, b.first_place + j, b.first_site + j, b.first_strand + j, b.width};
+                return NetStrands{b.length, b.first_index + j, b.first_site + j, b.first_strand + j, b.width};
             };
             for (; j + W <= b.width; j += W) body(vec{}, strands());
             for (; j < b.width; ++j) body(double{}, strands());
@@ -144,16 +144,16 @@ struct Net : NetSites {
         for (; i + W <= end; i += W) body(vec{}, i);
         for (; i < end; ++i) body(double{}, i);
     }
-    // Along strands: calls body(place, from, to) for each bond, with values at its atoms, first() and last() of the
-    // nodes, between(site, place) of the atom before the bond at that place.
+    // Along strands: calls body(bond_index, from, to) for each bond, with values at its atoms, first() and last() of
+    // the nodes, between(site, bond_index) of the atom before the bond at that index.
     template <class First, class Between, class Last, class Body>
     HOL_FORCED static void for_bonds(const NetStrands &g, const First &first, const Between &between, const Last &last,
                                      const Body &body) {
         auto from = first();
         for (int32_t k = 0; k < g.length; ++k) {
-            const int32_t place = g.place + k * g.step;
-            const auto to = k + 1 < g.length ? between(g.site + k * g.step, place + g.step) : last();
-            body(place, from, to);
+            const int32_t bond_index = g.bond_index + k * g.step;
+            const auto to = k + 1 < g.length ? between(g.site + k * g.step, bond_index + g.step) : last();
+            body(bond_index, from, to);
             from = to;
         }
     }
@@ -164,24 +164,24 @@ struct Net : NetSites {
         return bond;
     }
 
-    // Calls each(place, sign) for the bonds of a node or, after the nodes, of a tree's atom, but for the own ends of a
-    // node; sign: 1 where they begin there, else -1.
+    // Calls each(bond_index, sign) for the bonds of a node or, after the nodes, of a tree's atom, but for the own ends
+    // of a node; sign: 1 where they begin there, else -1.
     template <class Each>
     HOL_FORCED void for_other_bonds(int32_t number, const Each &each) const {
         if (number < s.n_nodes)
             for (int32_t f = s.foreign_start[number]; f < s.foreign_start[number + 1]; ++f)
-                each(s.place_of[s.foreign[f]], -1.0);
+                each(s.bond_index_of[s.foreign[f]], -1.0);
         else
-            each(s.first_tree_place + number - s.n_nodes, -1.0);
+            each(s.first_tree_bond + number - s.n_nodes, -1.0);
         for (int32_t c = s.child_start[number]; c < s.child_start[number + 1]; ++c)
-            each(s.first_tree_place + s.child[c], 1.0);
+            each(s.first_tree_bond + s.child[c], 1.0);
     }
     // Of any site, all of them.
     template <class Each>
     HOL_FORCED void for_bonds_of(int32_t site, const Each &each) const {
         if (site >= s.first_node) {
             const int32_t number = site - s.first_node;
-            if (number < s.n_nodes) for_own(number, [&](int32_t u) { each(s.place_of[u], s.sign[u]); });
+            if (number < s.n_nodes) for_own(number, [&](int32_t u) { each(s.bond_index_of[u], s.sign[u]); });
             return for_other_bonds(number, each);
         }
         int32_t bundle = 0, end = s.bundle_start[s.n_shares];
@@ -190,8 +190,8 @@ struct Net : NetSites {
             (s.bundle[middle].first_site <= site ? bundle : end) = middle;
         }
         const NetworkPlan::Bundle &b = s.bundle[bundle];
-        each(b.first_place + site - b.first_site, -1.0);
-        each(b.first_place + site - b.first_site + b.width, 1.0);
+        each(b.first_index + site - b.first_site, -1.0);
+        each(b.first_index + site - b.first_site + b.width, 1.0);
     }
 };
 
@@ -202,19 +202,19 @@ struct StrandPulls {
     const double *const t;
     const Net3 &d;
     Vector3<V> of_bond;
-    HOL_FORCED StrandPulls(const Net &of, const double *multipliers, const Net3 &bonds, int32_t place)
-        : net(of), t(multipliers), d(bonds), of_bond(load_any<V>(t + place) * d.get<V>(place)) {}
-    // Of the atom before the bond at this place, which is the next one.
-    HOL_FORCED Vector3<V> before(int32_t place) {
+    HOL_FORCED StrandPulls(const Net &of, const double *multipliers, const Net3 &bonds, int32_t bond_index)
+        : net(of), t(multipliers), d(bonds), of_bond(load_any<V>(t + bond_index) * d.get<V>(bond_index)) {}
+    // Of the atom before the bond at this index, which is the next one.
+    HOL_FORCED Vector3<V> before(int32_t bond_index) {
         const Vector3<V> last = of_bond;
-        net.fetch_ahead(place, t, d.x, d.y, d.z);
-        of_bond = load_any<V>(t + place) * d.get<V>(place);
+        net.fetch_ahead(bond_index, t, d.x, d.y, d.z);
+        of_bond = load_any<V>(t + bond_index) * d.get<V>(bond_index);
         return of_bond - last;
     }
     // Calls each(site, pull) for all of these atoms.
     template <class Each>
     HOL_FORCED void for_sites(const NetStrands &g, const Each &each) {
-        for (int32_t k = 1; k < g.length; ++k) each(g.site + (k - 1) * g.step, before(g.place + k * g.step));
+        for (int32_t k = 1; k < g.length; ++k) each(g.site + (k - 1) * g.step, before(g.bond_index + k * g.step));
     }
 };
 

@@ -32,8 +32,8 @@ struct Unknowns : Ends {
         if (s.fronts.at_once) use_fronts();
     }
     // Solves for y until what is left is `part` of it, both as sums of squares' roots, and, with `sizes`, of right-hand
-    // sides' terms by place, every unknown's is a rounding of its own, or of the mean. How many rounds it took, or -1.
-    // What the iteration cannot do alone is begun again with fronts.
+    // sides' terms by bond index, every unknown's is a rounding of its own, or of the mean. How many rounds it took, or
+    // -1. What the iteration cannot do alone is begun again with fronts.
     int32_t solve(double part, const double *sizes) const {
         const int32_t taken = iterate(part, sizes);
         return taken < 0 && use_fronts() ? iterate(part, sizes) : taken;
@@ -45,7 +45,7 @@ struct Unknowns : Ends {
         for (int32_t u = 0; u < s.n_unknowns; ++u) {
             const bool turned = static_cast<uint32_t>(u) * 2654435769u >> 31 != 0;
             y[u] = turned ? -E[u] : E[u];
-            sizes[s.place_of[u]] = E[u];
+            sizes[s.bond_index_of[u]] = E[u];
         }
         if (2 * solve(part, sizes) > s.fronts.rounds) use_fronts();
     }
@@ -55,7 +55,7 @@ private:
         Sums<double> all = sums_of_shares([&](int32_t share, Parts &parts) {
             net.for_unknowns(share, [&](auto width, int32_t u) HOL_FORCED {
                 typedef decltype(width) V;
-                const V whole = load_any<V>(y + u), of_terms = sizes ? gather<V>(sizes, s.place_of + u) : V{};
+                const V whole = load_any<V>(y + u), of_terms = sizes ? gather<V>(sizes, s.bond_index_of + u) : V{};
                 store_any(x + u, V{});
                 store_any(r + u, whole);
                 store_any(size + u, Width<V>::all(rounding_part) * (of_terms * of_terms));

@@ -104,11 +104,12 @@ template <class Body>
 HOL_INLINE void for_bonds_of_junctions(const PathPlan &plan, const Junctions &junctions, const EliminationPlan &s,
                                        int32_t reach, int32_t n, const Body &body) {
     for (int32_t i = 0; i < junctions.used; ++i) {
-        for (int32_t k = 0; k < junctions.kind.n_bonds; ++k) body(i, plan.bond[junctions.bond(i) + k], s.place_of[k]);
+        for (int32_t k = 0; k < junctions.kind.n_bonds; ++k)
+            body(i, plan.bond[junctions.bond(i) + k], s.bond_index_of[k]);
         for (int32_t l = 0; l < junctions.kind.n_overlaps; ++l)
             for (int32_t j = 0; j < n; ++j)
                 body(i, bond_of_overlap(plan, plan.overlap[junctions.overlap(i) + l], j),
-                     s.place_of[junctions.kind.n_bonds + l * reach + j]);
+                     s.bond_index_of[junctions.kind.n_bonds + l * reach + j]);
     }
 }
 
@@ -118,7 +119,7 @@ static inline void keep_junctions(const PathsWork &x, const Junctions &junctions
     for_bonds_of_junctions(x.plan, junctions, s, reach, PathPlan::bonds_of_end,
                            [&](int32_t i, int32_t bond, int32_t place) { x.tau[bond] = newton.x.row[place].tau[i]; });
     for (int32_t k = 0; k < junctions.kind.n_atoms; ++k) {
-        const vec3 move = newton.displacements()[s.slot_of[k]];
+        const vec3 move = newton.displacements()[s.index_of[k]];
         for (int32_t i = 0; i < junctions.used; ++i) x.move[junctions.atom(i) + k] = {move.x[i], move.y[i], move.z[i]};
     }
 }

@@ -3,8 +3,8 @@
 // subtracts. That it may is shown by another one beside it, of the matrix with what rounding may do to it taken off its
 // diagonal, many times over: `margin` is negative where a pivot of that is not positive (theory (57b)).
 //
-// Bond p of the ring, at place n_tree + p, points from slot n_tree + p to the next one: the bond *behind* this atom, as
-// p - 1 is the one *before* it.
+// Bond p of the ring, at bond index n_tree + p, points from index n_tree + p to the next one: the bond *behind* this
+// atom, as p - 1 is the one *before* it.
 #pragma once
 
 #include "core/kernels/arithmetic/thresholds.hpp"
@@ -57,31 +57,31 @@ struct RingPivots {
     }
 };
 
-HOL_INLINE int32_t children_of(const EliminationPlan &s, int32_t slot) {
-    return s.child_start[slot + 1] - s.child_start[slot];
+HOL_INLINE int32_t children_of(const EliminationPlan &s, int32_t index) {
+    return s.child_start[index + 1] - s.child_start[index];
 }
-// Calls body(before, slot, k) for the atoms of the ring: the place of the bond before it, its slot, which is the place
+// Calls body(before, index, k) for the atoms of the ring: the index of the bond before it, its index, which is that
 // of the one behind, and its number of children; bare: none has any.
 template <bool bare, class Body>
 HOL_INLINE void for_ring(const EliminationPlan &s, const Body &body) {
     int32_t before = s.n_bonds - 1;
-    for (int32_t slot = bare ? 0 : s.n_tree; slot < s.n_atoms; ++slot) {
-        body(before, slot, bare ? 0 : children_of(s, slot));
-        before = slot;
+    for (int32_t index = bare ? 0 : s.n_tree; index < s.n_atoms; ++index) {
+        body(before, index, bare ? 0 : children_of(s, index));
+        before = index;
     }
 }
 
 // Eliminates the children of an atom of the ring, as up_joint() does, for two bonds in place of one.
 template <int known, class V>
-HOL_INLINE RingJoint<V> up_ring_joint(const Molecules<V> &x, int32_t before, int32_t slot, V *reach, V margin) {
+HOL_INLINE RingJoint<V> up_ring_joint(const Molecules<V> &x, int32_t before, int32_t index, V *reach, V margin) {
     constexpr int k = known;
-    const AtomRows<V> rows(x, slot);
+    const AtomRows<V> rows(x, index);
     JointMemory<V, known> f = {};
     V z_to[known];
     const V w = rows.w();
     decompose(rows, k, w, f.S, f.r, f.m, margin);
     V *const m = rows.multipliers();
-    BondRow<V> &to = x.row[before], &from = x.row[slot];
+    BondRow<V> &to = x.row[before], &from = x.row[index];
     const V whole_to = w * to.q, whole_from = w * from.q;
     V between = w * dot(to.d, from.d), left_to = whole_to, left_from = whole_from, y_to = to.t, y_from = from.t;
     V error_to = whole_to, error_from = whole_from, error_between = {}, error[known];
@@ -94,7 +94,7 @@ HOL_INLINE RingJoint<V> up_ring_joint(const Molecules<V> &x, int32_t before, int
         y_to = mul_add(f.l[a], rows.bond(a).t, y_to);
         reach[a] = f.l[a];
         // E of the child may be small, as the difference of what its own children leave.
-        const V own = x.w[rows.place(a)] * rows.bond(a).q;
+        const V own = x.w[rows.bond_index(a)] * rows.bond(a).q;
         error[a] = mul_add(w, rows.bond(a).q, own * min(own / rows.bond(a).E, Width<V>::all(1 / least_part)));
         error_to = mul_add(f.l[a] * f.l[a], error[a], error_to);
         f.y[a] = w * dot(rows.bond(a).d, from.d);
@@ -132,16 +132,16 @@ static inline void up_ring(Molecules<V> &x, const RingLinear<V> &ring) {
     const V part = Width<V>::all(-1 / most_roundings(x.s.n_bonds)), left = Width<V>::all(1) + part,
             least = Width<V>::all(-least_lowered_part), one = Width<V>::all(1);
     const int32_t first = bare ? 0 : x.s.n_tree, end = x.s.n_bonds - 1;
-    for_ring<bare>(x.s, [&](int32_t before, int32_t slot, int k) HOL_FORCED {
+    for_ring<bare>(x.s, [&](int32_t before, int32_t index, int k) HOL_FORCED {
         RingShare<V> joint, low;
         BondRow<V> &row = x.row[before];
         if (k == 0) {
-            const V w = x.w[slot];
-            joint = {w * row.q, w * x.row[slot].q, w * dot(row.d, x.row[slot].d)};
+            const V w = x.w[index];
+            joint = {w * row.q, w * x.row[index].q, w * dot(row.d, x.row[index].d)};
             low = {left * joint.before, left * joint.behind, joint.between};
         } else {
             const RingJoint<V> whole_joint = choose_number<1, most_on_ring>(
-                k, [=](auto known) HOL_FORCED { return up_ring_joint<known>(x, before, slot, reach, margin); });
+                k, [=](auto known) HOL_FORCED { return up_ring_joint<known>(x, before, index, reach, margin); });
             reach += 2 * k;
             margin = whole_joint.margin;
             joint = whole_joint.share;
@@ -149,7 +149,7 @@ static inline void up_ring(Molecules<V> &x, const RingLinear<V> &ring) {
             low = {mul_add(part, error.before, joint.before), mul_add(part, error.behind, joint.behind),
                    mul_add(part, error.between, joint.between)};
         }
-        if (slot == first) {
+        if (index == first) {
             pivots.start(joint);
             lowered.start(low);
             return;
@@ -158,8 +158,8 @@ static inline void up_ring(Molecules<V> &x, const RingLinear<V> &ring) {
         margin = min(mul_add(least, pivots.whole(joint), low_P), margin);
         row.r = r;
         row.t = row.E = y * r;
-        lowered.eliminate(low, one / low_P, slot == end);
-        pivots.eliminate(joint, r, slot == end);
+        lowered.eliminate(low, one / low_P, index == end);
+        pivots.eliminate(joint, r, index == end);
         row.l = pivots.to_next;
         *to_last++ = pivots.to_last;
         y_of_last = mul_add(pivots.to_last, y, y_of_last);
@@ -178,22 +178,22 @@ HOL_INLINE void substitute_ring(const System &x, const V *reach, const V *to_las
                                 const Joint &joint) {
     V carried = {}, y_of_last = {};
     const int32_t first = bare ? 0 : x.s.n_tree;
-    for_ring<bare>(x.s, [&](int32_t before, int32_t slot, int k) HOL_FORCED {
+    for_ring<bare>(x.s, [&](int32_t before, int32_t index, int k) HOL_FORCED {
         choose_number<0, bare ? 0 : most_on_ring>(k, [&](auto known) HOL_FORCED {
             if constexpr (known > 0) {
-                const Rows rows(x, slot);
-                V y_to = x.row[before].t, y_from = x.row[slot].t;
+                const Rows rows(x, index);
+                V y_to = x.row[before].t, y_from = x.row[index].t;
                 for (int a = 0; a < known; ++a) {
                     y_to = mul_add(reach[a], rows.bond(a).t, y_to);
                     y_from = mul_add(reach[known + a], rows.bond(a).t, y_from);
                 }
                 reach += 2 * known;
                 x.row[before].t = y_to;
-                x.row[slot].t = y_from;
+                x.row[index].t = y_from;
                 joint(rows, known);
             }
         });
-        if (slot == first) return;
+        if (index == first) return;
         auto &row = x.row[before];
         const V y = row.t + carried;
         y_of_last = mul_add(*to_last++, y, y_of_last);
@@ -222,21 +222,21 @@ struct RingBond {
 // Looks at the k children of an atom of the ring and the two bonds of the ring. What u and t differ by, E of the rows
 // and t, came from around the ring: both count as pulls.
 template <int k, class V>
-HOL_INLINE void look_at_ring_atom(Molecules<V> &x, int32_t before, int32_t slot, const RingBond<V> &to,
+HOL_INLINE void look_at_ring_atom(Molecules<V> &x, int32_t before, int32_t index, const RingBond<V> &to,
                                   const RingBond<V> &from) {
-    const int32_t *const child = x.s.child + x.s.child_start[slot];
+    const int32_t *const child = x.s.child + x.s.child_start[index];
     V T2 = to.pull + from.pull;
     HOL_UNROLL_FEW
     for (int a = 0; a < k; ++a) T2 = mul_add(x.row[child[a]].q, x.row[child[a]].t * x.row[child[a]].t, T2);
-    const V w = x.w[slot], shared = (w * w) * (x.per_cancelled2 * T2);
+    const V w = x.w[index], shared = (w * w) * (x.per_cancelled2 * T2);
     V least = min(mul_add(-shared, to.error, to.own), mul_add(-shared, from.error, from.own));
     HOL_UNROLL_FEW
     for (int a = 0; a < k; ++a) least = min(left_of(x.row[child[a]], shared), least);
     const MaskOf<V> cancelling = less(least, V{});
     if (__builtin_expect(!any(cancelling), 1)) return;
     for (int a = -2; a < k; ++a) {
-        const int32_t place = a == -2 ? before : a < 0 ? slot : child[a];
-        flag_cancelling_bond(x, x.row[place], place, shared, bits(cancelling), x.margin);
+        const int32_t bond_index = a == -2 ? before : a < 0 ? index : child[a];
+        flag_cancelling_bond(x, x.row[bond_index], bond_index, shared, bits(cancelling), x.margin);
     }
 }
 
@@ -248,21 +248,21 @@ static inline void down_ring(Molecules<V> &x, const RingLinear<V> &ring) {
     const V last = x.row[s.n_bonds - 1].t, *to_last = ring.to_last + s.n_core - 1;
     V behind = last;
     RingBond<V> from(x.row[s.n_bonds - 1]);
-    for (int32_t slot = s.n_bonds - 1; slot >= s.n_tree; --slot) {
-        const bool first = slot == s.n_tree;
-        const int32_t place = first ? s.n_bonds - 1 : slot - 1;
-        BondRow<V> &row = x.row[place];
+    for (int32_t index = s.n_bonds - 1; index >= s.n_tree; --index) {
+        const bool first = index == s.n_tree;
+        const int32_t bond_index = first ? s.n_bonds - 1 : index - 1;
+        BondRow<V> &row = x.row[bond_index];
         V before = last;
         if (!first) row.t = before = mul_add(row.l, behind, mul_add(*--to_last, last, row.t));
         const RingBond<V> to(row);
-        const int k = bare ? 0 : children_of(s, slot);
+        const int k = bare ? 0 : children_of(s, index);
         reach -= 2 * k;
         choose_number<0, bare ? 0 : most_on_ring>(k, [&](auto known) HOL_FORCED {
             for (int a = 0; a < known; ++a) {
-                BondRow<V> &child = x.row[s.child[s.child_start[slot] + a]];
+                BondRow<V> &child = x.row[s.child[s.child_start[index] + a]];
                 child.t = mul_add(reach[a], before, mul_add(reach[known + a], behind, child.t));
             }
-            if (look) look_at_ring_atom<known>(x, place, slot, to, from);
+            if (look) look_at_ring_atom<known>(x, bond_index, index, to, from);
         });
         from = to;
         behind = before;

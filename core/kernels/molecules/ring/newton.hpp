@@ -41,7 +41,7 @@ struct RingNewton {
         closure = reinterpret_cast<Closure *>(memory.values(2 * static_cast<int64_t>(s.n_bonds)));
     }
 
-    void set_masses(const MoleculeLane *lane) { masses_by_slot(x.s, lane, x.w); }
+    void set_masses(const MoleculeLane *lane) { masses_by_index(x.s, lane, x.w); }
 
     // The displacement of an atom between the bonds that pull it with tau b.
     HOL_FORCED Vector3<V> pull_of(int32_t bond) const { return x.row[bond].tau * x.row[bond].b; }
@@ -58,7 +58,7 @@ struct RingNewton {
             put(row[k].D, next - before);
             put(before, next);
         }
-        return {Slots<V>(row, &row->D.x), x.w};
+        return {ByIndex<V>(row, &row->D.x), x.w};
     }
 
     // The bond vectors as tau moves them, one after the other, the last one first.

@@ -15,12 +15,12 @@ struct NewtonRingJoint {
 };
 
 template <int known, class V>
-HOL_INLINE NewtonRingJoint<V> factorize_ring_joint(const NewtonSystem<V> &x, int32_t before, int32_t slot,
+HOL_INLINE NewtonRingJoint<V> factorize_ring_joint(const NewtonSystem<V> &x, int32_t before, int32_t index,
                                                    int64_t reach) {
     constexpr int k = known;
-    const NewtonAtom<V> atom(x, slot);
+    const NewtonAtom<V> atom(x, index);
     const V w = atom.w();
-    const Vector3<V> D_to = x.new_D[before], D_from = x.new_D[slot], b_to = x.row[before].b, b_from = x.row[slot].b;
+    const Vector3<V> D_to = x.new_D[before], D_from = x.new_D[index], b_to = x.row[before].b, b_from = x.row[index].b;
     V lower = w * dot(D_from, b_to), upper = w * dot(D_to, b_from);
     if constexpr (k == 0) return {w * dot(D_to, b_to), w * dot(D_from, b_from), -lower, -upper};
     NewtonMemory<V, k + (k == 0)> f;
@@ -45,18 +45,18 @@ static inline void factorize_ring(const NewtonSystem<V> &x) {
     int64_t reach = 0, p = 0;
     V fill = {}, lower = {}, upper = {}, diagonal = {}, last = {};
     const int32_t end = x.s.n_bonds - 1;
-    for_ring<false>(x.s, [&](int32_t before, int32_t slot, int k) HOL_FORCED {
+    for_ring<false>(x.s, [&](int32_t before, int32_t index, int k) HOL_FORCED {
         NewtonRingJoint<V> joint = choose_number<0, most_on_ring>(
-            k, [&](auto known) HOL_FORCED { return factorize_ring_joint<known>(x, before, slot, reach); });
+            k, [&](auto known) HOL_FORCED { return factorize_ring_joint<known>(x, before, index, reach); });
         reach += 2 * k;
-        if (slot == x.s.n_tree) {
+        if (index == x.s.n_tree) {
             last = joint.before;  // the last bond is before this atom, the first one behind it
             lower = joint.upper;
             upper = joint.lower;
         } else {
             NewtonRow<V> &row = x.row[before];
             const V r = Width<V>::all(1) / (diagonal + joint.before + fill);
-            if (slot == end) {
+            if (index == end) {
                 lower = lower + joint.lower;
                 upper = upper + joint.upper;
                 joint.lower = joint.upper = V{};
@@ -95,19 +95,19 @@ static inline void down_ring(const NewtonSystem<V> &x, MaskOf<V> active) {
     const V *reach = x.reach_down + 2 * static_cast<int64_t>(s.n_tree - s.child_start[s.n_tree]);
     const V last = x.row[s.n_bonds - 1].t, *to_last = x.core_upper + s.n_core - 1;
     V behind = last;
-    for (int32_t slot = s.n_bonds - 1; slot >= s.n_tree; --slot) {
-        NewtonRow<V> &row = x.row[slot];
+    for (int32_t index = s.n_bonds - 1; index >= s.n_tree; --index) {
+        NewtonRow<V> &row = x.row[index];
         row.tau = row.tau + keep(active, behind);
         V before = last;
-        if (slot > s.n_tree) {
-            NewtonRow<V> &next = x.row[slot - 1];
+        if (index > s.n_tree) {
+            NewtonRow<V> &next = x.row[index - 1];
             next.t = before = mul_add(next.down, behind, mul_add(*--to_last, last, next.t));
         }
-        const int k = children_of(s, slot);
+        const int k = children_of(s, index);
         reach -= 2 * k;
         choose_number<0, most_on_ring>(k, [&](auto known) HOL_FORCED {
             for (int a = 0; a < known; ++a) {
-                NewtonRow<V> &child = x.row[s.child[s.child_start[slot] + a]];
+                NewtonRow<V> &child = x.row[s.child[s.child_start[index] + a]];
                 child.t = mul_add(reach[a], before, mul_add(reach[known + a], behind, child.t));
             }
         });

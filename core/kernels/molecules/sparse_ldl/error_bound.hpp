@@ -137,7 +137,7 @@ struct LdlErrorBound {
         }
         if (!any_flags) return left;
         V *const change = all.back;
-        clear_sides(all.s, change);
+        clear_contributions(all.s, change);
         all.up([&](const LdlLinear<V> &own, const Subtree &subtree) HOL_FORCED {
             for_tiles_up(own.s, subtree, [&](const Tile &tile) HOL_FORCED {
                 for (int32_t k = tile.first; k < tile.end; ++k) change[k] = V{};
@@ -212,7 +212,7 @@ struct LdlErrorBound {
     }
     // At the others, in the end.
     __attribute__((noinline)) void look_at_outer(const Tile &tile) {
-        add_sides(s, tile, x.back);
+        add_contributions(s, tile, x.back);
         start_looking(tile);
         for (; flag->column >= 0; ++flag) --most_flags;
         for (int32_t k = tile.first_outer; k < tile.end_outer && left; ++k)
@@ -222,8 +222,8 @@ struct LdlErrorBound {
 
     // Reads the molecules and eliminates: factors, and right-hand sides on their way up.
     static void factorize(const LdlLinear<V> &all) {
-        clear_sides(all.s, all.t);
-        clear_sides(all.s, all.per_pivot);
+        clear_contributions(all.s, all.t);
+        clear_contributions(all.s, all.per_pivot);
         clear_entries(all.s, all.lower);
         all.up([](const LdlLinear<V> &own, const Subtree &subtree) HOL_FORCED {
             unsigned proven = bits(own.in_use()), firm = proven;
@@ -241,7 +241,7 @@ struct LdlErrorBound {
     }
     // The way down. Returns the lanes in which the proof holds; multipliers are found in all.
     static unsigned solve(const LdlLinear<V> &all) {
-        clear_sides(all.s, all.back);
+        clear_contributions(all.s, all.back);
         for (int64_t k = all.s.n_bonds; k < in_fours(all.s.n_bonds); ++k) all.back[k] = V{};  // inert
         // Where it fails in the separator subtrees need not look; what they do is the same in any case.
         unsigned *const separator = all.left + all.s.n_subtrees;

@@ -7,8 +7,8 @@ namespace holonomic::HOL_ISA::graph {
 
 template <class V>
 __attribute__((noinline)) void eliminate(const LdlLinear<V> &x, const Tile &tile) {
-    add_sides(x.s, tile, x.t);
-    add_sides(x.s, tile, x.per_pivot);
+    add_contributions(x.s, tile, x.t);
+    add_contributions(x.s, tile, x.per_pivot);
     add_entries(x.s, tile, x.lower);
     const int32_t *update = x.s.update + tile.first_update;
     V *const pivot = x.per_pivot, *const t = x.t, *const lower = x.lower;
@@ -65,7 +65,7 @@ __attribute__((noinline)) void substitute_back(const LdlLinear<V> &x, const Tile
         for (int32_t e = 0; e < n; ++e) back[row[e]] = mul_add(abs(l[e]), all, back[row[e]]);
         t[k] = multiplier;
     });
-    give_sides(x.s, tile, t);
+    give_contributions(x.s, tile, t);
 }
 
 }  // namespace holonomic::HOL_ISA::graph

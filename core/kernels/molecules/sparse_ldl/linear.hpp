@@ -32,7 +32,7 @@ struct LdlLinear {
     V *lower, *size;    // |d|
     V *diagonal;        // of A, of one tile; then R of outer columns (error_bound.hpp)
     V *back, *rate;     // one memory: R, changes (error_bound.hpp), solutions (refinement.hpp), rates as they are left
-    V *side;            // right-hand sides as they came: refinement.hpp
+    V *rhs;             // right-hand sides as they came: refinement.hpp
     int32_t *bonds_at;  // of one tile: residual.hpp
     Rows<V> d_low, a_low;   // what refinement adds to the bonds of one tile, and to all accelerations; doubts
     V *found;               // [n_tiles] error_bound.hpp, refinement.hpp
@@ -55,9 +55,9 @@ struct LdlLinear {
         return in_fours((2 * in_fours(s.most_sites + 2) + 3 * most_columns(s) + in_one - 1) / in_one);
     }
     LdlLinear(const LdlPlan &list, const MoleculeLane *l, int in_use, bool packed, bool known, const LongTeam *threads,
-              const Box &b, const AtomArray &positions, const Inputs &inputs, int sides, Memory<V> &memory)
+              const Box &b, const AtomArray &positions, const Inputs &inputs, int rhs_terms, Memory<V> &memory)
         : s(list), lane(l), used(in_use), at(l, in_use, packed), box(b), coordinates(positions), in(inputs),
-          terms(sides), masses_known(known), team(s.n_subtrees > 0 ? threads : nullptr), own(memory.next),
+          terms(rhs_terms), masses_known(known), team(s.n_subtrees > 0 ? threads : nullptr), own(memory.next),
           with_rates(in.rates && !in.v->is_float) {
         memory.values(tile_values(s));
         const int64_t bonds = in_fours(s.n_bonds), columns = in_fours(s.n_columns);
@@ -68,7 +68,7 @@ struct LdlLinear {
         per_pivot = memory.values(columns);
         back = rate = memory.values(columns);
         size = memory.values(bonds);
-        side = memory.values(bonds);
+        rhs = memory.values(bonds);
         a = {memory.values(4 * static_cast<int64_t>(s.n_sites))};
         w = memory.values(in_fours(s.n_sites));
         a_low = {memory.values(4 * static_cast<int64_t>(s.n_sites))};

@@ -105,14 +105,14 @@ struct LdlNewton : LdlDisplacements<V> {
     // start(tile, rows of the thread) finds what the factors start from.
     template <class Start>
     __attribute__((noinline)) void make_factors(const Start &start) {
-        clear_sides(s, t);
-        clear_sides(s, r_pivot);
+        clear_contributions(s, t);
+        clear_contributions(s, r_pivot);
         clear_entries(s, lower);
         clear_entries(s, upper);
         this->up([&](const Tile &tile, const Rows<V> &rows) HOL_FORCED {
             start(tile, rows);
-            add_sides(s, tile, t);
-            add_sides(s, tile, r_pivot);
+            add_contributions(s, tile, t);
+            add_contributions(s, tile, r_pivot);
             add_entries(s, tile, lower);
             add_entries(s, tile, upper);
             eliminate(tile);
@@ -169,7 +169,7 @@ struct LdlNewton : LdlDisplacements<V> {
 
     // Corrections for what is left, in t, added to tau, and what they displace.
     void take_up() const {
-        clear_sides(s, t);
+        clear_contributions(s, t);
         this->up([&](const Tile &tile, const Rows<V> &) HOL_FORCED { solve_up(s, tile, lower, t); });
     }
     void solve(MaskOf<V> active) {

@@ -41,7 +41,7 @@ struct LdlWay {
     void write_pulls(const AtomArray &g, bool add, unsigned which) const { write_atoms(g, x.pull, add, which); }
     void write_atoms(const AtomArray &to, const Rows<V> &from, bool add, unsigned which) const {
         for_atoms(x.s, x.team, [&](int32_t first, int32_t end) HOL_FORCED {
-            write_vectors(to, x.at.from(first), x.s.place_of + first, end - first, from.slots(),
+            write_vectors(to, x.at.from(first), x.s.site_of + first, end - first, from.by_index(),
                           Written<V>{which, nullptr, x.lane, add, first});
         });
     }

@@ -165,7 +165,7 @@ struct LdlPositions : PositionWay<V> {
         bool any_fixed = false;
         for (int32_t i = first; i < end; ++i) any_fixed = any_fixed || elimination.fixed[i];
         const unsigned char *const fixed = any_fixed ? elimination.fixed + first : nullptr;
-        move_vectors(call, at.from(first), newton.s.place_of + first, end - first, newton.moves.slots(),
+        move_vectors(call, at.from(first), newton.s.site_of + first, end - first, newton.moves.by_index(),
                      Written<V>{which, fixed, nullptr, false, 0, right});
     }
 

@@ -53,7 +53,7 @@ __attribute__((noinline)) void move_atoms(const LdlLinear<V> &x, const Tile &til
 // With the factors that there are.
 template <class V>
 static inline void take_rates(const LdlLinear<V> &all, const AtomArray *to) {
-    clear_sides(all.s, all.rate);
+    clear_contributions(all.s, all.rate);
     all.up([](const LdlLinear<V> &x, const Subtree &subtree) HOL_FORCED {
         for_tiles_up(x.s, subtree, [&](const Tile &tile) HOL_FORCED {
             find_outer_rates(x, tile);

@@ -17,10 +17,10 @@ struct LdlRefinement {
     const LdlPlan &s;
     const int terms;
     V *const solution;  // in the memory of what the proof needed
-    V *const side;
+    V *const rhs;
 
     explicit LdlRefinement(const LdlLinear<V> &linear)
-        : x(linear), s(linear.s), terms(linear.terms), solution(x.back), side(x.side) {}
+        : x(linear), s(linear.s), terms(linear.terms), solution(x.back), rhs(x.rhs) {}
 
     // Calls body(this in a thread, tile) for all tiles, as LdlLinear does.
     template <class Body>
@@ -78,8 +78,8 @@ struct LdlRefinement {
     __attribute__((noinline)) void start(const Tile &tile) const {
         open(tile);
         x.load_inputs(tile);
-        for (int64_t k = tile.first; k < tile.end; k += step) x.some(side, k) = x.right_hand_sides_of(tile, k, terms);
-        x.add_given(tile, side);
+        for (int64_t k = tile.first; k < tile.end; k += step) x.some(rhs, k) = x.right_hand_sides_of(tile, k, terms);
+        x.add_given(tile, rhs);
         for (int32_t k = tile.first; k < tile.end; ++k) solution[k] = x.t[k];
     }
 
@@ -145,7 +145,7 @@ struct LdlRefinement {
         }
     }
     void solve() const {
-        clear_sides(s, x.t);
+        clear_contributions(s, x.t);
         down([](const LdlRefinement &own, const Tile &tile) HOL_FORCED {
             own.open_again(tile);
             own.pull_atoms(tile);
@@ -161,7 +161,7 @@ struct LdlRefinement {
     }
     V correct(MaskOf<V> active) const {
         const auto bond = [&](int32_t k) HOL_FORCED {
-            return Correction<V>{keep(active, x.t[k]), side[k] * x.per_pivot[k], x.size[k] * x.size[k], solution[k]};
+            return Correction<V>{keep(active, x.t[k]), rhs[k] * x.per_pivot[k], x.size[k] * x.size[k], solution[k]};
         };
         const V tension2 = largest([&](const LdlRefinement &, const Tile &tile)
                                        HOL_FORCED { return largest_tension2<V>(tile.first, tile.end, bond); });
@@ -171,7 +171,7 @@ struct LdlRefinement {
 
     // In which corrections are no more than what rounding does to right-hand sides: of velocities that are projected
     // already, or in free fall.
-    MaskOf<V> rounded_sides(const Tile &tile) const {
+    MaskOf<V> rounded_rhs(const Tile &tile) const {
         MaskOf<V> rounded = x.in_use();
         const Rows<V> a = x.a_of(tile);
         for (int32_t k = tile.first; k < tile.end; ++k) {
@@ -221,7 +221,7 @@ struct LdlRefinement {
     // Of the lanes that are not `proven`. Returns those that are right, with these.
     unsigned refine(unsigned proven) const {
         const auto rounded = [](const LdlRefinement &own, const Tile &tile)
-                                 HOL_FORCED { return own.rounded_sides(tile); };
+                                 HOL_FORCED { return own.rounded_rhs(tile); };
         const auto taken = [](const LdlRefinement &own, const Tile &tile)
                                HOL_FORCED { return own.take_solution(tile); };
         const auto cancelling = [](const LdlRefinement &own, const Tile &tile)

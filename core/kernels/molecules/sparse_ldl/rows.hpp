@@ -44,7 +44,7 @@ struct Rows {
     HOL_FORCED RowOf<V> &operator[](int64_t k) const { return *reinterpret_cast<RowOf<V> *>(start + 4 * k); }
     HOL_FORCED RowOf<V> &at_four_times(int32_t k) const { return *reinterpret_cast<RowOf<V> *>(start + k); }
     HOL_FORCED Rows from(int64_t first) const { return {start + 4 * first}; }
-    HOL_FORCED Slots<V> slots() const { return Slots<V>(reinterpret_cast<RowInLanes<V> *>(start), start); }
+    HOL_FORCED ByIndex<V> by_index() const { return ByIndex<V>(reinterpret_cast<RowInLanes<V> *>(start), start); }
 };
 
 HOL_INLINE Row in_row(double a) { return Row{a, a, a, a}; }

@@ -74,17 +74,17 @@ HOL_INLINE void for_columns_down(const LdlPlan &s, const Tile &tile, const Body 
 // What tiles have given to columns of later ones: none so far; added to the columns of a tile; as the columns of a tile
 // are now, for the tiles before.
 template <class V>
-HOL_INLINE void clear_sides(const LdlPlan &s, V *t) {
+HOL_INLINE void clear_contributions(const LdlPlan &s, V *t) {
     for (int64_t k = in_fours(s.n_bonds); k < s.n_columns; ++k) t[k] = V{};
 }
 template <class V>
-HOL_INLINE void add_sides(const LdlPlan &s, const Tile &tile, V *t) {
+HOL_INLINE void add_contributions(const LdlPlan &s, const Tile &tile, V *t) {
     for (int32_t i = tile.first_late; i < tile.end_late; ++i)
-        t[s.late[i].number] = t[s.late[i].number] + t[s.late[i].side];
+        t[s.late[i].number] = t[s.late[i].number] + t[s.late[i].contribution];
 }
 template <class V>
-HOL_INLINE void give_sides(const LdlPlan &s, const Tile &tile, V *t) {
-    for (int32_t i = tile.first_late; i < tile.end_late; ++i) t[s.late[i].side] = t[s.late[i].number];
+HOL_INLINE void give_contributions(const LdlPlan &s, const Tile &tile, V *t) {
+    for (int32_t i = tile.first_late; i < tile.end_late; ++i) t[s.late[i].contribution] = t[s.late[i].number];
 }
 // The same of entries.
 template <class V>
@@ -95,14 +95,14 @@ HOL_INLINE void clear_entries(const LdlPlan &s, V *lower) {
 template <class V>
 HOL_INLINE void add_entries(const LdlPlan &s, const Tile &tile, V *lower) {
     for (int32_t i = tile.first_late_entry; i < tile.end_late_entry; ++i)
-        lower[s.late_entry[i].number] = lower[s.late_entry[i].number] + lower[s.late_entry[i].side];
+        lower[s.late_entry[i].number] = lower[s.late_entry[i].number] + lower[s.late_entry[i].contribution];
 }
 
 // Another right-hand side, in t: up along the columns of a factor with a diagonal of ones, and down with the pivots and
 // the factor above the diagonal, which is the same one where the matrix is symmetric.
 template <class V>
 HOL_INLINE void solve_up(const LdlPlan &s, const Tile &tile, const V *lower, V *t) {
-    add_sides(s, tile, t);
+    add_contributions(s, tile, t);
     for_columns_up(s, tile, [&](int32_t k, int32_t first, int32_t n) HOL_FORCED {
         const int32_t *const row = s.row + first;
         const V *const l = lower + first, y = t[k];
@@ -121,7 +121,7 @@ HOL_INLINE void solve_down(const LdlPlan &s, const Tile &tile, const V *upper, c
         t[k] = x;
         each(k, x);
     });
-    give_sides(s, tile, t);
+    give_contributions(s, tile, t);
 }
 
 // What the bonds of a tile, times these multipliers, pull its sites by. Bonds and sites count from its first.
@@ -200,7 +200,7 @@ HOL_INLINE void read_atoms(const AtomArray &array, const Atoms<double> &at, cons
 template <class V>
 HOL_INLINE void read_atoms(const AtomArray &array, const Atoms<V> &at, const LdlPlan &s, const Tile &,
                            const Rows<V> &to) {
-    read_vectors(array, at, s.place_of, s.n_atoms, to.slots());
+    read_vectors(array, at, s.site_of, s.n_atoms, to.by_index());
 }
 // Writes row(site of the tile) of all own atoms of a tile: not where atoms belong to other molecules, too.
 template <class Value>

@@ -178,8 +178,8 @@ HOL_INLINE void write_star_bonds(const Atoms &atoms, const V *t, double factor, 
 
 // Right-hand sides, as load.hpp makes them.
 template <Inlined where, class AnyStar, int N, class V>
-HOL_INLINE void find_star_sides(const AtomArray &v, const AtomArray &f, const StarAtoms<where, N, V> &atoms,
-                                AnyStar &star, V *y) {
+HOL_INLINE void find_star_rhs(const AtomArray &v, const AtomArray &f, const StarAtoms<where, N, V> &atoms,
+                              AnyStar &star, V *y) {
     Vector3<V> a[N + 1];
     HOL_UNROLL
     for (int k = 0; k < N; ++k) y[k] = V{};
@@ -248,7 +248,7 @@ struct StarForcesVerb {
         atoms.read(call.r, r);
         atoms.take_bonds(r, call.box, star.d);
         star.invert();
-        find_star_sides(call.v, call.f, atoms, star, y);
+        find_star_rhs(call.v, call.f, atoms, star, y);
         return finish_star(outputs_of(call), atoms, star, y, in_use, tally);
     }
 };

@@ -23,7 +23,7 @@ bool up_flagged(FlaggedAtom &);
 // in a second one. And all that have been eliminated in extended precision, or more than fit.
 struct Cancelling {
     static constexpr int most = 31, most_extended = 20;
-    int32_t n, slot[most];
+    int32_t n, index[most];
     int32_t n_extended, extended[most_extended];
     bool again;  // the second solution
     void note_extended(int32_t s) {
@@ -32,14 +32,14 @@ struct Cancelling {
     }
     bool holds(int32_t s) const {
         for (int i = 0; i < n && again; ++i)
-            if (slot[i] == s) return true;
+            if (index[i] == s) return true;
         return false;
     }
     bool note(int32_t s) {
         for (int i = 0; i < n; ++i)
-            if (slot[i] == s) return true;
+            if (index[i] == s) return true;
         if (n == most) return false;
-        slot[n++] = s;
+        index[n++] = s;
         return true;
     }
 };

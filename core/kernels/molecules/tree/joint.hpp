@@ -156,14 +156,14 @@ template <class V>
 static inline void up_trees(Molecules<V> &x, Memory<V> memory) {
     V margin = x.margin;  // in a register
     const EliminationPlan &s = x.s;
-    for (int32_t slot = 0; slot < s.n_tree; ++slot) {
-        const int k = s.child_start[slot + 1] - s.child_start[slot];
+    for (int32_t index = 0; index < s.n_tree; ++index) {
+        const int k = s.child_start[index + 1] - s.child_start[index];
         if (k == 0) continue;
         const Molecules<V> *const molecules = &x;
         margin = choose_mostly<3>(
             k, [=](auto known) HOL_FORCED {  // captures by value, so that pivot margin stays in a register
                 V least = margin;
-                up_joint<known, false>(AtomRows<V, known>(*molecules, slot), k, memory, least);
+                up_joint<known, false>(AtomRows<V, known>(*molecules, index), k, memory, least);
                 return least;
             });
     }
@@ -171,63 +171,63 @@ static inline void up_trees(Molecules<V> &x, Memory<V> memory) {
     x.margin = margin;
 }
 
-// Calls before(slot) at each atom, which may make the right-hand side of the bond above it.
+// Calls before(index) at each atom, which may make the right-hand side of the bond above it.
 template <class V, class Before>
 HOL_INLINE void substitute_trees(const Molecules<V> &x, Memory<V> memory, const Before &before) {
     const Molecules<V> *const molecules = &x;
-    for (int32_t slot = 0; slot < x.s.n_tree; ++slot) {
-        before(slot);
-        const int k = x.s.child_start[slot + 1] - x.s.child_start[slot];
+    for (int32_t index = 0; index < x.s.n_tree; ++index) {
+        before(index);
+        const int k = x.s.child_start[index + 1] - x.s.child_start[index];
         if (k > 0)
             choose_mostly<3>(k, [=](auto known) HOL_FORCED {
-                substitute_joint<known, false>(AtomRows<V, known>(*molecules, slot), k, memory);
+                substitute_joint<known, false>(AtomRows<V, known>(*molecules, index), k, memory);
             });
     }
     if (x.s.type == EliminationPlan::tree) substitute_joint<1, true>(AtomRows<V, 1>(x, x.s.n_tree), 1, memory);
 }
 
 // Goes down at one atom: u of its children becomes t, from t of the bond above. `look`: tests the result. pulled: adds
-// to pull[slot], which has t d of the bond above, what the children pull, and begins theirs.
+// to pull[index], which has t d of the bond above, what the children pull, and begins theirs.
 template <int known, class V>
-HOL_INLINE void down_joint(const Molecules<V> &x, int32_t slot, int count, bool look, bool pulled, Vector3<V> *pull,
+HOL_INLINE void down_joint(const Molecules<V> &x, int32_t index, int count, bool look, bool pulled, Vector3<V> *pull,
                            V &margin) {
     const int k = known > 0 ? known : count;
-    const AtomRows<V, known> rows(x, slot);
-    const V above = x.row[slot].t;
+    const AtomRows<V, known> rows(x, index);
+    const V above = x.row[index].t;
     Vector3<V> sum = {};
-    if (pulled) sum = pull[slot];
+    if (pulled) sum = pull[index];
     HOL_UNROLL_FEW
     for (int a = k - 1; a >= 0; --a) {
         BondRow<V> &row = rows.bond(a);
         const V t = row.t = mul_add(row.l, above, row.t);
         if (!pulled) continue;
-        put(pull[rows.place(a)], add_times(Vector3<V>{}, -t, row.d));  // zeros as +0
+        put(pull[rows.bond_index(a)], add_times(Vector3<V>{}, -t, row.d));  // zeros as +0
         put(sum, add_times(sum, t, row.d));
     }
-    if (pulled) put(pull[slot], sum);
+    if (pulled) put(pull[index], sum);
     if (!look || k == 1) return;
     const MaskOf<V> cancelling = cancelling_bonds<V>(rows, k);
-    if (__builtin_expect(any(cancelling), 0)) flag_cancelling_bonds(x, slot, k, bits(cancelling), margin);
+    if (__builtin_expect(any(cancelling), 0)) flag_cancelling_bonds(x, index, k, bits(cancelling), margin);
 }
 template <class V>
-HOL_NOINLINE void down_many_joint(const Molecules<V> &x, int32_t slot, int k, bool look, bool pulled, Vector3<V> *pull,
+HOL_NOINLINE void down_many_joint(const Molecules<V> &x, int32_t index, int k, bool look, bool pulled, Vector3<V> *pull,
                                   V &margin) {
-    down_joint<0>(x, slot, k, look, pulled, pull, margin);
+    down_joint<0>(x, index, k, look, pulled, pull, margin);
 }
 template <class V>
-HOL_INLINE void down_one(const Molecules<V> &x, int32_t slot, bool look, bool pulled, Vector3<V> *pull, V &margin) {
-    const int k = x.s.child_start[slot + 1] - x.s.child_start[slot];
-    if (k > 3) return down_many_joint(x, slot, k, look, pulled, pull, margin);
-    if (k == 1) down_joint<1>(x, slot, k, look, pulled, pull, margin);
-    if (k == 2) down_joint<2>(x, slot, k, look, pulled, pull, margin);
-    if (k == 3) down_joint<3>(x, slot, k, look, pulled, pull, margin);
+HOL_INLINE void down_one(const Molecules<V> &x, int32_t index, bool look, bool pulled, Vector3<V> *pull, V &margin) {
+    const int k = x.s.child_start[index + 1] - x.s.child_start[index];
+    if (k > 3) return down_many_joint(x, index, k, look, pulled, pull, margin);
+    if (k == 1) down_joint<1>(x, index, k, look, pulled, pull, margin);
+    if (k == 2) down_joint<2>(x, index, k, look, pulled, pull, margin);
+    if (k == 3) down_joint<3>(x, index, k, look, pulled, pull, margin);
 }
 
 // Goes down the trees.
 template <bool look, class V>
 static inline void down_trees(Molecules<V> &x, Vector3<V> *pull) {
     V margin = x.margin;
-    for (int32_t slot = x.s.n_tree - 1; slot >= 0; --slot) down_one(x, slot, look, true, pull, margin);
+    for (int32_t index = x.s.n_tree - 1; index >= 0; --index) down_one(x, index, look, true, pull, margin);
     x.margin = margin;
 }
 

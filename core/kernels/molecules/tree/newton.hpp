@@ -50,8 +50,8 @@ struct TreeNewton {
 
     // And all else that stays from block to block.
     void set_masses(const MoleculeLane *lane) {
-        masses_by_slot(x.s, lane, x.w);
-        for (int32_t slot = 0; slot < x.s.n_atoms; ++slot) x.atom[slot].w = x.w[slot];
+        masses_by_index(x.s, lane, x.w);
+        for (int32_t index = 0; index < x.s.n_atoms; ++index) x.atom[index].w = x.w[index];
         for (int32_t k = 0; k < x.s.n_bonds; ++k) x.row[k].down = V{};  // at the root and the core it is never made
     }
 
@@ -73,10 +73,10 @@ struct TreeNewton {
     HOL_FORCED static Vector3<V> moved(const NewtonRow<V> &row, const PulledAtom<V> &from, const PulledAtom<V> &to) {
         return row.D + difference(to.w, to.pull, from.w, from.pull);
     }
-    HOL_FORCED Vector3<V> moved(int32_t place) const {
+    HOL_FORCED Vector3<V> moved(int32_t bond_index) const {
         int32_t from, to;
-        ends_of(x.s, place, from, to);
-        return pulled ? moved(x.row[place], x.atom[from], x.atom[to]) : x.row[place].D;
+        ends_of(x.s, bond_index, from, to);
+        return pulled ? moved(x.row[bond_index], x.atom[from], x.atom[to]) : x.row[bond_index].D;
     }
 
     // Makes factors for the bonds as they have been moved, in the lanes of `which`.
@@ -84,7 +84,7 @@ struct TreeNewton {
         for (int32_t k = 0; k < x.s.n_bonds; ++k) {
             NewtonRow<V> &row = x.row[k];
             const Vector3<V> D = moved(k);
-            Slots<V>(x.new_D).put(k, D);
+            ByIndex<V>(x.new_D).put(k, D);
             const V stretch = row.stretch, sigma = excess(D, row.a2), e = sigma * row.per_a2, left = row.left(sigma, e);
             row.t = select(which, row.first_left(sigma, e), left);
             row.stretch = select(which, row.stretch, stretch);
@@ -119,13 +119,13 @@ struct TreeNewton {
 
     __attribute__((noinline)) void make_factors() const {
         const EliminationPlan &s = x.s;
-        for (int32_t slot = 0; slot < s.n_tree; ++slot) {
-            const int k = s.child_start[slot + 1] - s.child_start[slot];
+        for (int32_t index = 0; index < s.n_tree; ++index) {
+            const int k = s.child_start[index + 1] - s.child_start[index];
             if (k == 0)
-                x.row[slot].r = x.w[slot] * dot(x.new_D[slot], x.row[slot].b);
+                x.row[index].r = x.w[index] * dot(x.new_D[index], x.row[index].b);
             else
                 choose_mostly<3>(k, [=](auto known) HOL_FORCED {
-                    factorize_joint<known, false, V>(NewtonAtom<V, known>(x, slot), k);
+                    factorize_joint<known, false, V>(NewtonAtom<V, known>(x, index), k);
                 });
         }
         if (s.n_core_atoms == 0)
@@ -135,10 +135,10 @@ struct TreeNewton {
     }
 
     // At one atom of k children.
-    HOL_FORCED void substitute(int32_t slot, int k) const {
+    HOL_FORCED void substitute(int32_t index, int k) const {
         if (k > 0)
             choose_mostly<3>(k, [=](auto known) HOL_FORCED {
-                substitute_newton_joint<known, false, V>(NewtonAtom<V, known>(x, slot), k);
+                substitute_newton_joint<known, false, V>(NewtonAtom<V, known>(x, index), k);
             });
     }
     // Goes up the trees and the core: what is left of the lengths becomes u, in t of the rows. measured: it is found on
@@ -154,9 +154,9 @@ struct TreeNewton {
             measure<false>(bond, moved(bond, atom[s.from[p]], atom[s.to[p]]), errors);
         }
         const int32_t *const parent = s.parent, *const child_start = s.child_start;
-        for (int32_t slot = 0; slot < s.n_tree; ++slot, ++row, ++own) {
-            if (measured) measure<false>(*row, moved(*row, atom[parent[slot]], *own), errors);
-            substitute(slot, child_start[slot + 1] - child_start[slot]);
+        for (int32_t index = 0; index < s.n_tree; ++index, ++row, ++own) {
+            if (measured) measure<false>(*row, moved(*row, atom[parent[index]], *own), errors);
+            substitute(index, child_start[index + 1] - child_start[index]);
         }
         if (s.n_core_atoms == 0)
             substitute_newton_joint<1, true, V>(NewtonAtom<V, 1>(x, s.n_tree), 1);
@@ -181,24 +181,26 @@ struct TreeNewton {
     __attribute__((noinline)) void go_down(MaskOf<V> active) {
         const EliminationPlan &s = x.s;
         if (s.type == EliminationPlan::ring) {
-            const auto of_bond = [&](int32_t place) HOL_FORCED { return x.row[place].tau * x.row[place].b; };
+            const auto of_bond = [&](int32_t bond_index)
+                                     HOL_FORCED { return x.row[bond_index].tau * x.row[bond_index].b; };
             Vector3<V> before = of_bond(s.n_bonds - 1);
-            for (int32_t slot = s.n_tree; slot < s.n_atoms; ++slot) {
-                const Vector3<V> behind = of_bond(slot);
-                put(x.atom[slot].pull, behind - before);
+            for (int32_t index = s.n_tree; index < s.n_atoms; ++index) {
+                const Vector3<V> behind = of_bond(index);
+                put(x.atom[index].pull, behind - before);
                 put(before, behind);
             }
         } else {
             put(x.atom[s.n_tree].pull, Vector3<V>{});
         }
         V t = {};
-        for (int32_t slot = s.n_tree; slot-- > 0;) {
-            const int32_t parent = s.parent[slot];
-            NewtonRow<V> &row = x.row[slot];
-            PulledAtom<V> &own = x.atom[slot], &above = x.atom[parent];
+        for (int32_t index = s.n_tree; index-- > 0;) {
+            const int32_t parent = s.parent[index];
+            NewtonRow<V> &row = x.row[index];
+            PulledAtom<V> &own = x.atom[index], &above = x.atom[parent];
             V tau = row.tau;
             if (corrected) {
-                if (parent != slot + 1) t = x.row[parent].t;  // else at hand; through memory the next would wait for it
+                if (parent != index + 1)
+                    t = x.row[parent].t;  // else at hand; through memory the next would wait for it
                 row.t = t = mul_add(row.down, t, row.t);
                 row.tau = tau = tau + keep(active, t);
             }
@@ -208,7 +210,7 @@ struct TreeNewton {
         pulled = true;
     }
 
-    Displacements<V> displacements() const { return {Slots<V>(x.atom, &x.atom->pull.x), x.w}; }
+    Displacements<V> displacements() const { return {ByIndex<V>(x.atom, &x.atom->pull.x), x.w}; }
 
     // Sets tau = 0 in the lanes of `which`.
     void forget(MaskOf<V> which) {
@@ -221,7 +223,7 @@ struct TreeNewton {
 
     // A bond as it comes: the first factors are for these.
     HOL_FORCED void measure_first(int32_t k, const Vector3<V> &D, Errors &errors) const {
-        Slots<V>(x.new_D).put(k, D);
+        ByIndex<V>(x.new_D).put(k, D);
         measure<true>(x.row[k], D, errors);
     }
     V open() const { return opening; }

@@ -50,10 +50,10 @@ struct PulledAtom {
 template <class V>
 struct NewtonSystem {
     const EliminationPlan &s;
-    V *w;  // [n_atoms] by slot
+    V *w;  // [n_atoms] by index
     NewtonRow<V> *row;
     V *lower, *upper;            // [n_pairs] each
-    PulledAtom<V> *atom;         // [n_atoms] by slot
+    PulledAtom<V> *atom;         // [n_atoms] by index
     Vector3<V> *r_ref, *r;       // [n_atoms] coordinates, until the bonds are made
     Vector3<V> *new_D;           // [n_bonds] bonds as moved, for new factors
     V *core_lower, *core_upper;  // [n_core] each, of a ring: what its last bond gets of each, and each of the last one
@@ -103,24 +103,24 @@ struct NewtonMemory<V, 0> {
     static constexpr int64_t values(int64_t k) { return k * k + k * (k - 1) + 5 * k; }
 };
 
-// An atom at the position level: its bonds at their places, those to its children, and the one above. known: how many
-// children it has, where the compiler knows it. In lanes their slots follow each other; one molecule may be larger.
+// An atom at the position level: its bonds at their indices, those to its children, and the one above. known: how many
+// children it has, where the compiler knows it. In lanes their indices follow each other; one molecule may be larger.
 // tree_batch/newton.hpp has the same for atoms of W different trees.
 template <class V, int known = 0>
 struct NewtonAtom {
     const NewtonSystem<V> &x;
-    const int32_t slot, first, *const child;
+    const int32_t index, first, *const child;
 
     HOL_FORCED NewtonAtom(const NewtonSystem<V> &system, int32_t s)
-        : x(system), slot(s), first(system.s.child_start[s]), child(system.s.child + first) {}
-    HOL_FORCED V w() const { return x.w[slot]; }
-    HOL_FORCED int32_t place(int a) const { return known > 0 && Width<V>::lanes > 1 ? first + a : child[a]; }
-    HOL_FORCED NewtonRow<V> &bond(int a) const { return x.row[place(a)]; }
-    HOL_FORCED const Vector3<V> &D(int a) const { return x.new_D[place(a)]; }
-    HOL_FORCED NewtonRow<V> &above() const { return x.row[slot]; }
-    HOL_FORCED const Vector3<V> &D_above() const { return x.new_D[slot]; }
-    HOL_FORCED V *lower() const { return x.lower + x.s.pair_start[slot]; }
-    HOL_FORCED V *upper() const { return x.upper + x.s.pair_start[slot]; }
+        : x(system), index(s), first(system.s.child_start[s]), child(system.s.child + first) {}
+    HOL_FORCED V w() const { return x.w[index]; }
+    HOL_FORCED int32_t bond_index(int a) const { return known > 0 && Width<V>::lanes > 1 ? first + a : child[a]; }
+    HOL_FORCED NewtonRow<V> &bond(int a) const { return x.row[bond_index(a)]; }
+    HOL_FORCED const Vector3<V> &D(int a) const { return x.new_D[bond_index(a)]; }
+    HOL_FORCED NewtonRow<V> &above() const { return x.row[index]; }
+    HOL_FORCED const Vector3<V> &D_above() const { return x.new_D[index]; }
+    HOL_FORCED V *lower() const { return x.lower + x.s.pair_start[index]; }
+    HOL_FORCED V *upper() const { return x.upper + x.s.pair_start[index]; }
     HOL_FORCED Memory<V> working() const { return x.working; }
 };
 

@@ -17,24 +17,24 @@
 
 namespace holonomic::HOL_ISA::graph {
 
-// The bonds of an atom, each at its place: those to its children, and the one above. known: as in NewtonAtom, not for
+// The bonds of an atom, each at its index: those to its children, and the one above. known: as in NewtonAtom, not for
 // atoms of a core.
 // tree_batch/sweeps.hpp has the same for atoms in lanes.
 template <class V, int known = 0>
 struct AtomRows {
     const Molecules<V> &x;
-    const int32_t slot, first, *const child;
+    const int32_t index, first, *const child;
 
-    AtomRows(const Molecules<V> &m, int32_t s) : x(m), slot(s), first(m.s.child_start[s]), child(m.s.child + first) {}
-    HOL_FORCED V w() const { return x.w[slot]; }
-    HOL_FORCED int32_t place(int a) const { return known > 0 && Width<V>::lanes > 1 ? first + a : child[a]; }
-    HOL_FORCED BondRow<V> &bond(int a) const { return x.row[place(a)]; }
-    HOL_FORCED BondRow<V> &above() const { return x.row[slot]; }
+    AtomRows(const Molecules<V> &m, int32_t s) : x(m), index(s), first(m.s.child_start[s]), child(m.s.child + first) {}
+    HOL_FORCED V w() const { return x.w[index]; }
+    HOL_FORCED int32_t bond_index(int a) const { return known > 0 && Width<V>::lanes > 1 ? first + a : child[a]; }
+    HOL_FORCED BondRow<V> &bond(int a) const { return x.row[bond_index(a)]; }
+    HOL_FORCED BondRow<V> &above() const { return x.row[index]; }
     // Of a child with the bond above; of a single one by the rule of product_of().
     HOL_FORCED V product(int a, int k) const {
-        return k == 1 ? product_of(x, place(0), slot) : dot(bond(a).d, above().d);
+        return k == 1 ? product_of(x, bond_index(0), index) : dot(bond(a).d, above().d);
     }
-    HOL_FORCED V *multipliers() const { return x.pair + x.s.pair_start[slot]; }
+    HOL_FORCED V *multipliers() const { return x.pair + x.s.pair_start[index]; }
 };
 
 // Returns the square of that part of the error which all bonds at an atom share.
@@ -89,13 +89,13 @@ HOL_NOINLINE double terms_of(const Inputs &in, const double *d, const int64_t *n
     return sum;
 }
 
-// Those of a bond at a place, in one lane.
+// Those of a bond at an index, in one lane.
 template <class V>
-double terms_of(const Molecules<V> &x, const BondRow<V> &row, int32_t place, int lane) {
-    if (x.in.rhs) return __builtin_fabs(0.5 * x.in.rhs[x.lane[lane].first_bond + x.s.bond_of[place]]);
+double terms_of(const Molecules<V> &x, const BondRow<V> &row, int32_t bond_index, int lane) {
+    if (x.in.rhs) return __builtin_fabs(0.5 * x.in.rhs[x.lane[lane].first_bond + x.s.bond_of[bond_index]]);
     const double d[3] = {Width<V>::get(row.d.x, lane), Width<V>::get(row.d.y, lane), Width<V>::get(row.d.z, lane)};
     int32_t end[2];
-    ends_of(x.s, place, end[0], end[1]);
+    ends_of(x.s, bond_index, end[0], end[1]);
     const int64_t number[2] = {x.at.number(lane, x.s.atom_of[end[0]]), x.at.number(lane, x.s.atom_of[end[1]])};
     const double w[2] = {Width<V>::get(x.w[end[0]], lane), Width<V>::get(x.w[end[1]], lane)};
     return terms_of(x.in, d, number, w);
@@ -103,26 +103,26 @@ double terms_of(const Molecules<V> &x, const BondRow<V> &row, int32_t place, int
 
 // Looks again at a bond in the lanes of `which`. Slack becomes negative where it is cancelling all the same.
 template <class V>
-HOL_NOINLINE void flag_cancelling_bond(const Molecules<V> &x, const BondRow<V> &row, int32_t place, const V &shared,
-                                       unsigned which, V &margin) {
+HOL_NOINLINE void flag_cancelling_bond(const Molecules<V> &x, const BondRow<V> &row, int32_t bond_index,
+                                       const V &shared, unsigned which, V &margin) {
     const V left = left_of(row, shared);
     int32_t from, to;
-    ends_of(x.s, place, from, to);
+    ends_of(x.s, bond_index, from, to);
     const V A = (x.w[from] + x.w[to]) * row.q;
     for (unsigned rest = which & bits(less(left, V{})); rest; rest &= rest - 1) {
         const int i = __builtin_ctz(rest);
-        const double own = terms_of(x, row, place, i) / Width<V>::get(A, i);
+        const double own = terms_of(x, row, bond_index, i) / Width<V>::get(A, i);
         if (!(Width<V>::get(left, i) + own * own >= 0)) Width<V>::set(margin, i, -1);
     }
 }
 // The same for all bonds of an atom of a tree.
 template <class V>
-HOL_NOINLINE void flag_cancelling_bonds(const Molecules<V> &x, int32_t slot, int k, unsigned which, V &margin) {
-    const int32_t *const child = x.s.child + x.s.child_start[slot];
-    const V shared = shared_error<V>(AtomRows<V>(x, slot), k);
+HOL_NOINLINE void flag_cancelling_bonds(const Molecules<V> &x, int32_t index, int k, unsigned which, V &margin) {
+    const int32_t *const child = x.s.child + x.s.child_start[index];
+    const V shared = shared_error<V>(AtomRows<V>(x, index), k);
     for (int a = -1; a < k; ++a) {
-        const int32_t place = a < 0 ? slot : child[a];
-        flag_cancelling_bond(x, x.row[place], place, shared, which, margin);
+        const int32_t bond_index = a < 0 ? index : child[a];
+        flag_cancelling_bond(x, x.row[bond_index], bond_index, shared, which, margin);
     }
 }
 

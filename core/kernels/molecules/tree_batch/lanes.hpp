@@ -200,22 +200,22 @@ struct BatchTrees {
 
     // Steps, and their places; `root`: the last of them is that of the roots.
     struct Range {
-        int32_t step, end_step, place, end_place;
+        int32_t step, end_step, row, end_row;
         bool root;
         int32_t inner_end() const { return root ? end_step - 1 : end_step; }
     };
     Range all() const { return {0, f.n_steps, 0, f.n_places, true}; }
-    int32_t place_of(int32_t step) const { return step < f.n_steps ? f.step[step].first : f.n_places; }
+    int32_t row_of(int32_t step) const { return step < f.n_steps ? f.step[step].first : f.n_places; }
     // Of one large tree; tile n_tiles is the top.
     Range tile(int32_t p) const {
         const int32_t step = f.tile_start[p], end = f.tile_start[p + 1];
-        return {step, end, place_of(step), place_of(end), p == f.n_tiles};
+        return {step, end, row_of(step), row_of(end), p == f.n_tiles};
     }
 
     // Calls body(place, bits of the lanes of `which` that hold a bond there).
     template <class Body>
     HOL_FORCED void for_held(const Range &range, unsigned which, const Body &body) const {
-        for (int32_t p = range.place; p < range.end_place; ++p)
+        for (int32_t p = range.row; p < range.end_row; ++p)
             if (const unsigned held = f.held[p] & which) body(p, held);
     }
     // Calls write(place, atom, lanes) for the atoms of these arrays in the lanes of which & ~but(place).

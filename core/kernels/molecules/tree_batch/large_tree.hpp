@@ -151,11 +151,11 @@ struct LargeTree {
         for_tiles([&](int32_t p) { write(z.tile(p)); });
         write(z.tile(top()));
     }
-    // In the order of the slots, whatever lanes there are.
+    // In the order of the indices, whatever lanes there are.
     void add_virial(unsigned which, Tally &tally) const {
         graph::add_virial<double>(
-            0, z.f.elimination[0]->n_tree, [&](int32_t slot) { return bond_at(z.f.element[slot]).d; },
-            [&](int32_t slot) { return bond_at(z.f.element[slot]).t; }, 1, which, tally);
+            0, z.f.elimination[0]->n_tree, [&](int32_t index) { return bond_at(z.f.element[index]).d; },
+            [&](int32_t index) { return bond_at(z.f.element[index]).t; }, 1, which, tally);
     }
     BondRow<double> bond_at(int32_t element) const { return one_of(z.row[element / W], element % W); }
 

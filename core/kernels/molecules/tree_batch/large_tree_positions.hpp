@@ -83,7 +83,7 @@ struct LargeTreeNewton {
             [&](int32_t p) {
                 BatchNewton::Errors unused = {};
                 const Range range = x.tile(p);
-                for (int32_t k = range.place; k < range.end_place; ++k)
+                for (int32_t k = range.row; k < range.end_row; ++k)
                     TreeNewton<vec>::measure<true>(x.row[k], x.new_D[k], unused);
                 x.begin_factors(range);
             },
@@ -145,14 +145,14 @@ struct LargeTreePositions : PositionWay<double> {
     void write_multipliers(unsigned) const {
         newton.up([](int32_t) {}, [&](int32_t p) { lanes.write_multipliers(newton.x.tile(p), all_lanes); });
     }
-    // In the order of the slots, whatever lanes there are.
+    // In the order of the indices, whatever lanes there are.
     void add_virial(unsigned which) const {
         const BatchNewton &x = newton.x;
-        const auto element = [&](int32_t slot) { return x.f.element[slot]; };
+        const auto element = [&](int32_t index) { return x.f.element[index]; };
         graph::add_virial<double>(
             0, x.f.elimination[0]->n_tree,
-            [&](int32_t slot) { return one_of(x.row[element(slot) / W].b, element(slot) % W); },
-            [&](int32_t slot) { return x.row[element(slot) / W].tau[element(slot) % W]; }, per_dt2(), which, tally);
+            [&](int32_t index) { return one_of(x.row[element(index) / W].b, element(index) % W); },
+            [&](int32_t index) { return x.row[element(index) / W].tau[element(index) % W]; }, per_dt2(), which, tally);
     }
     void write_moves(unsigned, unsigned) {
         if (!newton.displaced) newton.displace<false>();

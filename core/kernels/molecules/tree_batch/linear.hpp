@@ -134,7 +134,7 @@ struct BatchLinear : BatchTrees {
     // As finite_solution() has it.
     __attribute__((noinline)) mask finite_in(const Range &range) const {
         vec sum = {}, sum_of_squares = {}, least = splat(1);
-        for (int32_t p = range.place; p < range.end_place; ++p) {
+        for (int32_t p = range.row; p < range.end_row; ++p) {
             sum = sum + abs(row[p].t);
             sum_of_squares = sum_of_squares + row[p].q;
             least = min(select(lanes_of(f.held[p]), row[p].q, splat(1)), least);
@@ -143,7 +143,7 @@ struct BatchLinear : BatchTrees {
     }
 
     __attribute__((noinline)) void add_pulls_to_velocities(const Range &range) {
-        for (int32_t p = range.place; p < range.end_place + (range.root ? 1 : 0); ++p) {
+        for (int32_t p = range.row; p < range.end_row + (range.root ? 1 : 0); ++p) {
             const vec mass = p < f.n_places ? lower_w[p] : w[f.n_steps - 1];
             velocity[p] = add_times(velocity[p], mass, pull[p]);
         }

@@ -81,7 +81,7 @@ struct BatchNewton : BatchTrees {
     __attribute__((noinline)) void load_lengths(const Range &range, vec &least, vec &most) {
         least = splat(1e300);
         most = vec{};
-        for (int32_t p = range.place; p < range.end_place; ++p) {
+        for (int32_t p = range.row; p < range.end_row; ++p) {
             const double *length[W];
             HOL_UNROLL
             for (int i = 0; i < W; ++i) length[i] = lane[i].length + f.bond[static_cast<int64_t>(p) * W + i];
@@ -98,7 +98,7 @@ struct BatchNewton : BatchTrees {
     typedef TreeNewton<vec>::Errors Errors;
     __attribute__((noinline)) vec open(const Range &range) {
         Errors errors = {};
-        for (int32_t p = range.place; p < range.end_place; ++p) {
+        for (int32_t p = range.row; p < range.end_row; ++p) {
             new_D[p] = row[p].D;
             TreeNewton<vec>::measure<true>(row[p], row[p].D, errors);
         }
@@ -208,7 +208,7 @@ struct BatchNewtonJoint {
 };
 
 inline __attribute__((noinline)) void BatchNewton::begin_factors(const Range &range) {
-    for (int32_t p = range.place; p < range.end_place; ++p)
+    for (int32_t p = range.row; p < range.end_row; ++p)
         row[p].r = select(lanes_of(f.held[p]), lower_w[p] * dot(new_D[p], row[p].b), splat(1));  // of a leaf
 }
 

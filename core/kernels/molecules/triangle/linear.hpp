@@ -21,8 +21,8 @@ struct TriangleCall {
 
 // Right-hand sides as load.hpp makes them.
 template <Inlined where, class V>
-HOL_INLINE void triangle_sides(const TriangleCall &call, const Atoms<V> &at, const TriangleMasses<V> &m,
-                               const Vector3<V> *d, V *y) {
+HOL_INLINE void triangle_rhs(const TriangleCall &call, const Atoms<V> &at, const TriangleMasses<V> &m,
+                             const Vector3<V> *d, V *y) {
     Vector3<V> a[3];
     for (int k = 0; k < 3; ++k) y[k] = V{};
     if (call.v.x) {
@@ -54,9 +54,9 @@ HOL_INLINE V terms_of(const TriangleMasses<V> &m, const TriangleInverse<V> &inve
 // side that an element multiplies small. By value: what they are made of stays in registers where this is not asked.
 template <class V>
 HOL_NOINLINE MaskOf<V> bearable(const TriangleMasses<V> &m, const TriangleInverse<V> inverse, V X,
-                                const Vector3<V> sides) {
+                                const Vector3<V> rhs) {
     const V terms[3] = {terms_of(m, inverse, X, 0), terms_of(m, inverse, X, 1), terms_of(m, inverse, X, 2)},
-            y[3] = {abs(sides.x), abs(sides.y), abs(sides.z)};
+            y[3] = {abs(rhs.x), abs(rhs.y), abs(rhs.z)};
     V least = {};
     for (int k = 0; k < 3; ++k) {
         const int l = (k + 1) % 3, o = (k + 2) % 3;
@@ -76,7 +76,7 @@ HOL_INLINE unsigned solve_triangles(const TriangleCall &call, int used, const At
     V t[3], y[3], left = Width<V>::all(1);
     read_all<where, 3>(call.r, at, r);
     const Triangle<V> x = triangle_of(call.box, r);
-    triangle_sides<where>(call, at, m, x.d, y);
+    triangle_rhs<where>(call, at, m, x.d, y);
     const TriangleInverse<V> inverse = invert_triangle(m, x);
     TriangleInverse<V>::solve(inverse, y, t);
     MaskOf<V> right = x.closed & finite(t[0] + (t[1] + t[2])) & inverse.is_ordinary();
