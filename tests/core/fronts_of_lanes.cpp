@@ -40,7 +40,7 @@ bool solve(const holonomic::NetworkPlan &s, bool symmetric, const Terms &terms, 
     const Threads threads = {std::vector<std::vector<double>>(static_cast<std::size_t>(n_threads), buffer)};
     const holonomic::LongTeam team = {&threads, Threads::run};
     Memory<double> memory = {owned.data()};
-    const Fronts fronts(plan, symmetric, n_threads > 0 ? &team : nullptr, buffer.data(), memory);
+    const Fronts fronts(plan, symmetric, n_threads > 0 ? &team : nullptr, buffer.data(), memory, memory);
     if (memory.next - owned.data() != Fronts::values(plan, symmetric)) return false;
     const bool good = fronts.factorize(
         least_part,

@@ -21,7 +21,7 @@ struct Fronts {
     double *lower, *upper, *per_pivot;  // front by front
     double *waiting;                    // what fronts leave
     double *given;                      // by row: what those before give to it of a right-hand side
-    Offsets *bond_index;
+    Offsets *offsets;
     int64_t before_stack;  // of a thread's memory
 
     static int64_t values(const FrontPlan &s, bool symmetric) {
@@ -39,8 +39,8 @@ struct Fronts {
            Memory<double> &memory)
         : s(plan), team(threads), buffer(of_thread) {
         if (s.n_fronts == 0) return;
-        bond_index = reinterpret_cast<Offsets *>(memory.values(in_fours(4 * static_cast<int64_t>(s.n_fronts))));
-        const Sizes n = lay_out(s, [&](int32_t f, const Offsets &p) { bond_index[f] = p; });
+        offsets = reinterpret_cast<Offsets *>(memory.values(in_fours(4 * static_cast<int64_t>(s.n_fronts))));
+        const Sizes n = lay_out(s, [&](int32_t f, const Offsets &p) { offsets[f] = p; });
         lower = of_factor.values(in_fours(n.entries));
         upper = symmetric ? lower : of_factor.values(in_fours(n.entries));
         per_pivot = of_factor.values(in_fours(n.pivots));
@@ -144,12 +144,12 @@ private:
     }
     double *left_by(int32_t f, double *of_thread) const {
         const bool waits = s.front[f].subtree < 0 || is_last_of_subtree(s, f);
-        return (waits ? waiting : of_thread + before_stack) + bond_index[f].left;
+        return (waits ? waiting : of_thread + before_stack) + offsets[f].left;
     }
     Dense dense(int32_t f, double *of_thread) const {
         const FrontPlan::Front &front = s.front[f];
         const int32_t own = Dense::filled(front.n_own);
-        const Offsets &p = bond_index[f];
+        const Offsets &p = offsets[f];
         double *const left = (front.subtree < 0 ? waiting : of_thread + before_stack) + p.made;
         return {own,  own + rest_of(front), lower + p.entry, upper + p.entry,
                 left, per_pivot + p.pivot,  of_thread,       nullptr};

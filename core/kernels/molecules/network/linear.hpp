@@ -20,7 +20,7 @@ struct NetLinear : NetProof {
     NetLinear(const NetworkPlan &plan, const MoleculeLane &l, bool packed, const LongTeam *team, const Box &b,
               const AtomArray &positions, const Inputs &inputs, int rhs_terms, Memory<double> of_factor,
               Memory<double> memory)
-        : NetProof(plan, l, packed, team, b, positions, inputs, sides, of_factor, memory) {}
+        : NetProof(plan, l, packed, team, b, positions, inputs, rhs_terms, of_factor, memory) {}
 
     __attribute__((noinline)) bool find_and_prove() const {
         if (!find()) return false;

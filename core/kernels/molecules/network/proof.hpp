@@ -78,7 +78,7 @@ struct NetProof : NetEquations {
     NetProof(const NetworkPlan &plan, const MoleculeLane &l, bool packed, const LongTeam *team, const Box &b,
              const AtomArray &positions, const Inputs &inputs, int rhs_terms, Memory<double> &of_factor,
              Memory<double> &memory)
-        : NetEquations(plan, l, packed, team, b, positions, inputs, sides, of_factor, memory),
+        : NetEquations(plan, l, packed, team, b, positions, inputs, rhs_terms, of_factor, memory),
           enough(memory.values(in_fours(s.n_bonds))), tension(memory.values(in_fours(n_rest(s))) - s.first_node),
           n_flags(reinterpret_cast<int32_t *>(memory.values(in_fours(s.n_shares / 2 + 1)))),
           factor(net, d, true, of_factor, memory) {}
