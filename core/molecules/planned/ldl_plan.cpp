@@ -222,7 +222,7 @@ private:
                 const std::int32_t k = row < 0 ? -1 : from[row], l = row < 0 ? -1 : to_atom[row];
                 const bool same = (i == k) | (j == l), shares = same | (i == l) | (j == k);
                 a_.row_4[to] = shares ? 4 * row : 0;
-                a_.mass[to] = shares ? ((i == k) | (i == l) ? i : j) / 2 + same : none;
+                a_.mass[to] = shares ? (((i == k) | (i == l)) ? i : j) / 2 + same : none;
             }
         }
         t.end_run = size_of(a_.run);
