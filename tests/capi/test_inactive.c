@@ -11,7 +11,7 @@ static unsigned char *leave_out(assembly *a)
 {
     unsigned char *active = calloc((size_t)a->n_chains, 1);
     for (int64_t c = 0; c < a->n_chains; ++c) {
-        active[c] = c % 3 == 1 ? 0 : (unsigned char)(1 + c % 255);
+        active[c] = (unsigned char)(c % 3 == 1 ? 0 : 1 + c % 255);
         if (active[c]) continue;
         for (int64_t i = 0; i <= assembly_bonds(a, c); ++i)
             for (int x = 0; x < 3; ++x) {
