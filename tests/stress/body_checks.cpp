@@ -15,7 +15,6 @@ namespace
 
 constexpr long double eps = DBL_EPSILON;
 constexpr long double least_promised = 1e-22L;  // pivots below it are promised nothing
-constexpr long double most_farther = 4;
 
 using reference::rigid_level;
 using reference::rigid_solution;
@@ -114,12 +113,7 @@ void check_positions(const hostile_body &m, const rigid_level &exact, const mole
         molecule_verdict there;
         if (other.there) compare_positions(m, other, alone, k, there);
         if (other.there && there.ratio[M_POSITION] <= 1) {
-            long double moves = 0, least = 0;
-            for (std::size_t i = 0; i < drifted.size(); ++i) {
-                moves = std::max(moves, std::fabs(other.moved[i] - drifted[i]));
-                least = std::max(least, std::fabs(exact.moved[i] - drifted[i]));
-            }
-            there.note(M_OTHER, moves / (most_farther * least));
+            there.note(M_OTHER, how_much_farther(drifted, other.moved.data(), exact.moved.data()));
             here = there;
         }
     }

@@ -203,15 +203,11 @@ void compare_with_other(const placement &a, const hostile_molecule &m, const mol
         return;
     molecule_verdict found;
     compare_positions(a, m, other, alone, found);
-    long double moves = 0, least = 0;
-    for (std::size_t i = 0; i < drifted.size(); ++i) {
-        moves = std::max(moves, std::fabs(other.moved[i] - drifted[i]));
-        least = std::max(least, std::fabs(s.moved[i] - drifted[i]));
+    if (found.ratio[M_POSITION] <= 1) {
+        found.note(M_OTHER, how_much_farther(drifted, other.moved, s.moved));
+        out = found;
     }
     molecule_solution_free(&other);
-    if (found.ratio[M_POSITION] > 1) return;
-    found.note(M_OTHER, moves / (most_farther * least));
-    out = found;
 }
 
 void check_positions(const placement &a, const hostile_molecule &m, const molecule_level &exact,
@@ -242,6 +238,16 @@ bool finite_or_blank(const numbers &x)
 
 /** A part may be several molecules for the library, if atoms of it are fixed: each is complete, or none of it written.
  */
+long double how_much_farther(const std::vector<double> &drifted, const long double *other, const long double *exact)
+{
+    long double moves = 0, least = 0;
+    for (std::size_t i = 0; i < drifted.size(); ++i) {
+        moves = std::max(moves, std::fabs(other[i] - drifted[i]));
+        least = std::max(least, std::fabs(exact[i] - drifted[i]));
+    }
+    return moves / (most_farther * least);
+}
+
 void check_outputs(const hostile_molecule &m, const molecule_results &part, molecule_verdict &out)
 {
     for (const numbers *x : {&part.lambda, &part.solved, &part.mu, &part.position_lambda, &part.log_det, &part.g,

@@ -36,6 +36,10 @@ molecule_verdict check_alone(const hostile_molecule &m, const molecule_reference
 void check_invariances(const std::vector<hostile_molecule> &molecules, std::uint64_t shuffle,
                        std::vector<molecule_verdict> &out);
 
+/** By how much farther from `drifted` another solution is than the reference's, over what is allowed. Both have a
+ * number for each of `drifted`. */
+long double how_much_farther(const std::vector<double> &drifted, const long double *other, const long double *exact);
+
 /** All but blanks times a factor; the first coordinates with the other sign. */
 void scale(numbers &x, double factor);
 void mirror(numbers &x);
