@@ -53,17 +53,7 @@ static results find(network_scene *s, int64_t n_bonds, const int64_t *place)
     const size_t size = 3 * (size_t)s->m.n_atoms, n = (size_t)n_bonds;
     int64_t *pairs = malloc(2 * n * sizeof *pairs);
     double *length = untouched(n), *rhs = untouched(n), *values[8];
-    results out = {untouched(size),
-                   copy_of(s->m.v, size),
-                   molecule_drifted(&s->m, 1e-3),
-                   NULL,
-                   NULL,
-                   NULL,
-                   NULL,
-                   NULL,
-                   NULL,
-                   NULL,
-                   NULL};
+    results out = {.g = untouched(size), .v = copy_of(s->m.v, size), .r = molecule_drifted(&s->m, 1e-3)};
     double *const start = copy_of(out.r, size);
     double **const to[8] = {&out.forces,    &out.tension, &out.solve,       &out.velocities,
                             &out.positions, &out.again,   &out.kept_forces, &out.kept_solve};

@@ -89,7 +89,7 @@ enum { n_sorts = sizeof sorts / sizeof *sorts };
 static void metric_force_of_a_large_gel_is_what_its_energy_falls_by(void **state)
 {
     (void)state;
-    if (quick_run()) return; /* of a smaller one it is not */
+    if (quick_run()) return; /* only a large one has such an order */
     const double h = 1e-5;
     network_scene s = make((sort){64, 66, 66, 0, 0, 0, 1}, 4);
     const size_t size = 3 * (size_t)s.m.n_atoms;

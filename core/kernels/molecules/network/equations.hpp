@@ -75,10 +75,10 @@ struct NetEquations {
         for (int32_t k = s.first_tree_bond; k < s.n_bonds; ++k) {
             const Vector3<double> bond = net.bond_between(box, r.get<double>(s.from[k]), r.get<double>(s.to[k]));
             d.set(k, bond);
-            find_side_of_tree(k, bond);
+            find_rhs_of_tree(k, bond);
         }
     }
-    HOL_FORCED void find_side_of_tree(int32_t k, const Vector3<double> &bond) const {
+    HOL_FORCED void find_rhs_of_tree(int32_t k, const Vector3<double> &bond) const {
         const int32_t i = s.from[k], j = s.to[k];
         find_rhs<double>(k, bond, {v.get<double>(i), f.get<double>(i)}, {v.get<double>(j), f.get<double>(j)});
     }
@@ -106,7 +106,7 @@ struct NetEquations {
             });
     }
     // Right-hand sides alone, where bonds, inverse masses and positions of the rest are kept: of the rest; of strands.
-    __attribute__((noinline)) void find_sides_of_rest() const {
+    __attribute__((noinline)) void find_rhs_of_rest() const {
         if (has_terms_of_atoms())
             net.for_ranges(s.first_node, s.n_atoms, [&](int32_t first, int32_t end) {
                 net.for_all(first, end, [&](auto width, int32_t i) HOL_FORCED {
@@ -115,10 +115,10 @@ struct NetEquations {
                     f.set(i, atom.f);
                 });
             });
-        for (int32_t k = s.first_tree_bond; k < s.n_bonds; ++k) find_side_of_tree(k, d.get<double>(k));
+        for (int32_t k = s.first_tree_bond; k < s.n_bonds; ++k) find_rhs_of_tree(k, d.get<double>(k));
     }
     template <class V>
-    HOL_FORCED void find_sides(const NetStrands &g) const {
+    HOL_FORCED void find_rhs_of_strands(const NetStrands &g) const {
         net.for_bonds(
             g, [&]() HOL_FORCED { return terms_at_node<V>(g, 0); },
             [&](int32_t site, int32_t) HOL_FORCED { return kept_terms_at<V>(site); },

@@ -98,10 +98,11 @@ struct NetProof : NetEquations {
     }
     // The same where the factors are kept.
     void load_rhs() const {
-        find_sides_of_rest();
+        find_rhs_of_rest();
         factor.take_up_rest(t);
         net.for_parts([&](const NetPart &part) {
-            net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED { find_sides<decltype(width)>(g); });
+            net.for_strands(
+                part, [&](auto width, const NetStrands &g) HOL_FORCED { find_rhs_of_strands<decltype(width)>(g); });
             factor.take_up(part, t);
         });
         factor.add_pushes();
