@@ -61,16 +61,25 @@ struct InRow : Consecutive<N> {
     HOL_FORCED void fetch_next(const double *) const {}  // the processor does that
 };
 
-// In a regular unit, with lists of atoms.
+// In a regular unit, with lists of atoms. Where those of single bonds stand is found once for all arrays; of more atoms
+// it would take the registers.
 template <int N>
 struct ByList : InRow<N>, AtomLists {
     static constexpr bool in_row = false, alike = false;
     const bool fetches;  // whether atoms behind these may be fetched, and are worth it
+    static constexpr int known = N == 1 ? 2 : 0;  // atoms
+    int64_t element[W][2];
     ByList(const Unit &unit, int64_t first, int64_t used)
         : InRow<N>(unit, first, used), AtomLists(unit.lanes[0].atoms + (N + 1) * first, N + 1),
-          fetches(unit.large && unit.count - first >= 2 * W) {}
+          fetches(unit.large && unit.count - first >= 2 * W) {
+        HOL_UNROLL
+        for (int i = 0; i < W; ++i)
+            for (int k = 0; k < known; ++k) element[i][k] = 3 * atoms[i][k];
+    }
     HOL_STATIC int64_t end(const Unit &unit, int64_t) { return unit.count; }
-    using AtomLists::atom;
+    HOL_FORCED const double *atom(const double *base, int i, long k) const {
+        return known > 0 ? base + element[i][k] : AtomLists::atom(base, i, k);
+    }
     HOL_FORCED Source source(const double *base, const Box &box) const { return {&box, nullptr, base, atoms}; }
     HOL_FORCED void fetch_next(const double *base) const {
         for (int i = 0; fetches && base && i < W; ++i)

@@ -94,7 +94,7 @@ HOL_INLINE NewtonOutcome iterate(const Block &block, Newton &x, const PositionsC
 }
 
 // True if chains of two bonds are solved without looking at the error between solves.
-HOL_INLINE bool tries_two_bonds(const PositionsCall &call) { return call.max_iterations >= two_bonds_solves; }
+HOL_INLINE bool tries_two_bonds(const PositionsCall &call) { return call.max_iterations >= fewest_solves; }
 
 // Newton's method on any lanes: chains of one or two bonds by short.hpp, and iterate() on what that leaves. extended:
 // with new factors at every step, D becomes the moved bonds.

@@ -49,8 +49,6 @@ HOL_INLINE NewtonOutcome solve_single_bonds(const Newton &x, Carried &carried, m
 //     P_0 = - (w_0 + w_1) tau_0 b_0 + w_1 tau_1 b_1,   P_1 = - (w_1 + w_2) tau_1 b_1 + w_1 tau_0 b_0:
 // nothing but products of bond vectors is needed to get there.
 
-// The fewest solves.
-constexpr int two_bonds_solves = 3;
 // Least part of m00 m11 that must be left in the determinant of M, so that enough digits are.
 constexpr double two_bonds_part = 1.0 / 64;
 
@@ -101,8 +99,9 @@ struct TwoBonds {
     }
 };
 
-// The lanes in `wanted`, into tau. Those that are neither converged nor untouched need iterate().
-template <Same masses, Same a>
+// The lanes in `wanted`, into tau, by no more than `most` solves; `fewest`: by the fewest, of which there are that many.
+// Those that are neither converged nor untouched need more, or iterate().
+template <Same masses, Same a, bool fewest>
 HOL_INLINE NewtonOutcome solve_two_bonds(Newton &x, Carried &carried, mask wanted, int most) {
     const vec3 b0 = x.b[0], b1 = x.b[1], D0 = x.D[0], D1 = x.D[1];
     const vec one = splat(1.0), w = times_w<masses>(x, 1, one);
@@ -123,7 +122,11 @@ HOL_INLINE NewtonOutcome solve_two_bonds(Newton &x, Carried &carried, mask wante
     const mask open = less(two_bonds_part * f.whole, f.part());
     mask unsure = wanted & open;
     vec tau[2];
-    const int solves = static_cast<int>(solve_for_multipliers<2>(m, tau, unsure, most));
+    int64_t solves = fewest_solves;
+    if constexpr (fewest)
+        unsure = fewest_for_multipliers<2>(m, tau);
+    else
+        solves = solve_for_multipliers<2>(m, tau, unsure, most);
     const mask near = wanted & ~out.untouched & open & ~unsure & carried.not_too_far(before, one);
     x.tau[0] = keep(near, tau[0]);
     x.tau[1] = keep(near, tau[1]);

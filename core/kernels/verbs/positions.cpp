@@ -179,8 +179,8 @@ HOL_INLINE int n_moved(const NewtonOutcome &out, int64_t n) {
 
 // The first attempt at a block. False if that is not enough for one of its lanes. Molecules that are right as they came
 // have no multipliers, and stay where they are: so does a dimer that turns freely under velocity Verlet, in which each
-// step undoes what the one before it did to the length.
-template <bool uniform, int N>
+// step undoes what the one before it did to the length. `fewest`: two bonds by the fewest solves.
+template <bool uniform, bool fewest, int N>
 HOL_INLINE bool solve_molecules(const Block &block, Newton &x, const PositionsCall &call, Carried &carried,
                                 NewtonOutcome &out) {
     constexpr Same all = same_if(uniform);
@@ -188,7 +188,7 @@ HOL_INLINE bool solve_molecules(const Block &block, Newton &x, const PositionsCa
     if (N == 1)
         out = solve_single_bonds<all>(x, carried, lanes);
     else if (N == 2)
-        out = solve_two_bonds<all, all>(x, carried, lanes, call.max_iterations);
+        out = solve_two_bonds<all, all, fewest>(x, carried, lanes, call.max_iterations);
     else
         out = iterate<all, all, N>(block, x, call, carried, lanes, false, false);
     return !any(~(out.converged | out.untouched)) &&
@@ -207,7 +207,8 @@ HOL_INLINE void note_block(const PositionsCall &call, const View &view, Block &b
                            const NewtonOutcome &out, Tally &tally) {
     if (tally.worst_chain >= 0 && !any(~less(out.error, splat(tally.worst)))) return;
     const Newton copy = x;
-    note_worst_of(call, view, block, copy, out.error, tally);
+    const View copied = view;
+    note_worst_of(call, copied, block, copy, out.error, tally);
 }
 
 // Single bonds, two blocks at a time: while one waits for its root and its quotient, the other is worked on. Ends
@@ -248,7 +249,7 @@ HOL_NOINLINE int64_t pairs_of_single_bonds(const PositionsCall &call, const Unit
 }
 
 // Does molecules from `first` on. Returns the first one that is not done.
-template <class View, bool uniform, bool boxed, bool virial>
+template <class View, bool uniform, bool boxed, bool virial, bool fewest>
 HOL_NOINLINE int64_t positions_of_molecules(const PositionsCall &call, const Unit &unit, Block &given, int64_t first,
                                             Tally &tally) {
     constexpr int N = View::bonds;
@@ -268,7 +269,7 @@ HOL_NOINLINE int64_t positions_of_molecules(const PositionsCall &call, const Uni
         vec atoms[vectors_of<N>];
         NewtonOutcome out;
         load_positions<boxed>(arrays, view, x, atoms, carried);
-        if (!solve_molecules<uniform, N>(block, x, call, carried, out)) break;
+        if (!solve_molecules<uniform, fewest, N>(block, x, call, carried, out)) break;
         if (call.report) note_block(call, view, View::alike ? given : newton.masses.own, x, out, tally);
         write_positions<uniform>(arrays, view, block, x, atoms, out.untouched);
         if (virial || (N >= fewest_with_virial && __builtin_expect(call.virial, 0)))
@@ -328,7 +329,10 @@ static inline int64_t small_positions(const PositionsCall &call, const Unit &uni
             if (!call.report && !call.virial)
                 first = pairs_of_single_bonds<View, uniform, boxed>(call, unit, block, first, tally);
         return with_virial_or_not<View, boxed>(call.virial, [&](auto virial, auto box) {
-            return positions_of_molecules<View, uniform, box, virial>(call, unit, block, first, tally);
+            // From where two bonds need more solves, the others are thought to need them: the loop takes registers.
+            if constexpr (View::bonds == 2 && View::packed && !virial && W > 1)
+                first = positions_of_molecules<View, uniform, box, virial, true>(call, unit, block, first, tally);
+            return positions_of_molecules<View, uniform, box, virial, false>(call, unit, block, first, tally);
         });
     };
     if (packed) return any_molecules(unit, block, first, has_box, one_length, kernel);
