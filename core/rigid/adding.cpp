@@ -21,13 +21,17 @@ namespace {
 // Numbers within a molecule are kept in 32 bits.
 constexpr std::int64_t most = std::int64_t{1} << 30;
 
-// Returns the number of atoms of all bodies.
-std::int64_t check_sizes(std::int64_t n_bodies, const std::int64_t *sizes, std::int64_t n_bonds, int base) {
+// Throws Error.
+void check_counts(std::int64_t n_bodies, std::int64_t n_bonds) {
     if (n_bodies < 0)
         throw make_error(Status::value, "n_bodies is %lld; it must be at least 0", static_cast<long long>(n_bodies));
     if (n_bonds < 0 || n_bonds > most)
         throw make_error(Status::value, "n_bonds is %lld; it must be in 0 .. %lld", static_cast<long long>(n_bonds),
                          static_cast<long long>(most));
+}
+
+// Returns the number of atoms of all bodies. Throws Error.
+std::int64_t check_sizes(std::int64_t n_bodies, const std::int64_t *sizes, int base) {
     std::int64_t n_held = 0;
     for (std::int64_t b = 0; b < n_bodies; ++b) {
         if (sizes[b] < 2 || sizes[b] > most || n_held > most)
@@ -126,8 +130,9 @@ void give_length(const rigid::MoleculeKind &kind, std::size_t bond, double lengt
 void Chains::add_rigid(std::int64_t n_bodies, const std::int64_t *sizes, const std::int64_t *atoms,
                        const double *coordinates, std::int64_t n_bonds, const std::int64_t *pairs,
                        const double *lengths) {
-    const std::int64_t n_held = check_sizes(n_bodies, sizes, n_bonds, base);
+    check_counts(n_bodies, n_bonds);
     if (n_bodies == 0 && n_bonds == 0) return;
+    const std::int64_t n_held = check_sizes(n_bodies, sizes, base);
     check_memory(*this, n_held + n_bonds, bytes_of_body_atom);
     check_lengths(n_bonds, lengths, base);
     commit_rigid(sort_rigid(n_bodies, sizes, atoms, 0, coordinates, n_bonds, pairs, lengths), n_bonds);
@@ -137,9 +142,10 @@ void Chains::add_rigid_molecules(std::int64_t count, std::int64_t n_atoms, std::
                                  std::int64_t n_bodies, const std::int64_t *sizes, const std::int64_t *atoms,
                                  const double *coordinates, std::int64_t n_bonds, const std::int64_t *pairs,
                                  const double *lengths) {
-    const std::int64_t n_held = check_sizes(n_bodies, sizes, n_bonds, base);
+    check_counts(n_bodies, n_bonds);
+    if (count == 0 || (n_bodies == 0 && n_bonds == 0)) return;  // the arrays need not be there
+    const std::int64_t n_held = check_sizes(n_bodies, sizes, base);
     check_lengths(n_bonds, lengths, base);
-    if (count == 0 || (n_bodies == 0 && n_bonds == 0)) return;
     const std::int64_t first = check_copies(count, n_atoms, first_atom);
     check_memory(*this, count * (n_held + std::min(n_bonds, most)), bytes_of_body_atom);
     check_of_molecule(atoms, n_held, n_atoms, false);

@@ -353,6 +353,9 @@ static void many_of_a_kind_are_as_each_alone(void **state)
         const int64_t own[3] = {3 * b, 3 * b + 1, 3 * b + 2};
         CHECK(hol_chains_add_rigid(single, 1, &three, own, place, 0, NULL, NULL));
     }
+    // Of no molecule nothing is read.
+    CHECK(hol_chains_add_rigid_molecules(many, 0, 3, 0, 2, NULL, NULL, NULL, 1, NULL, NULL));
+    assert_int_equal(hol_chains_n_molecules(many), 10);
     CHECK(hol_chains_set_masses(many, other));
     assert_int_equal(hol_chains_n_kinds(many), 1);
     CHECK(hol_forces(many, r, v, NULL, NULL, NULL, g[0], HOL_WRITE, NULL));
