@@ -139,7 +139,7 @@ template <class V>
 HOL_INLINE MaskOf<V> finite_solution(const Molecules<V> &x) {
     V sum = {}, sum_of_squares = {}, least = Width<V>::all(1);
     for (int32_t k = 0; k < x.s.n_bonds; ++k) {
-        sum = sum + abs(x.row[k].t);
+        sum = mul_add(x.row[k].t, V{}, sum);  // 0, and NaN once one is not finite
         sum_of_squares = sum_of_squares + x.row[k].q;
         least = min(x.row[k].q, least);
     }

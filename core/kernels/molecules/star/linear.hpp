@@ -58,25 +58,23 @@ struct Star<3, V> {
     inline HOL_FORCED V without_centre(int, const V &y) const { return y; }
     inline HOL_FORCED V of_inverse(int k, int l) const { return adj[k][l] * r; }
 
-    // The lanes in which nothing was lost.
-    inline HOL_FORCED MaskOf<V> is_regular() const {
-        return ~less(margin, V{}) & ordinary_squares<V>(abs(r), abs(r), most_of_three);
+    // The lanes in which nothing was lost, and `least` of what was left is not negative. There det is above 0, or NaN.
+    inline HOL_FORCED MaskOf<V> is_regular(const V &least) const {
+        return ~less(least, V{}) & ordinary_squares<V>(r, r, most_of_three);
     }
+    inline HOL_FORCED MaskOf<V> is_regular() const { return is_regular(margin); }
     // The lanes in which t of y is good: nothing was lost, and no multiplier is a small difference of large terms.
     inline HOL_FORCED MaskOf<V> good(const V *y, const V *t) const {
-        V T2 = q[0] * (t[0] * t[0]), least = margin, sum = t[0];
+        V T2 = q[0] * (t[0] * t[0]), least = margin;
         HOL_UNROLL
-        for (int k = 1; k < 3; ++k) {
-            T2 = mul_add(q[k], t[k] * t[k], T2);
-            sum = sum + t[k];
-        }
+        for (int k = 1; k < 3; ++k) T2 = mul_add(q[k], t[k] * t[k], T2);
         const V shared = (m.w[0] * m.w[0]) * ((1 / (most_cancelled * most_cancelled)) * T2);
         HOL_UNROLL
         for (int k = 0; k < 3; ++k) {
             const V of_one = this->of_one(k), alone = y[k] * of_one;
             least = min(mul_add(-shared, q[k] * (of_one * of_one), mul_add(t[k], t[k], alone * alone)), least);
         }
-        return finite(sum) & ~less(least, V{}) & ordinary_squares<V>(abs(r), abs(r), most_of_three);
+        return finite(T2) & is_regular(least);
     }
 
     // G of all atoms.
@@ -132,12 +130,9 @@ struct Star<4, V> {
     }
     // The lanes in which t of y is good.
     inline HOL_FORCED MaskOf<V> good(const V *y, const V *t) const {
-        V T2 = q[0] * (t[0] * t[0]), sum = t[0];
+        V T2 = q[0] * (t[0] * t[0]);
         HOL_UNROLL
-        for (int k = 1; k < 4; ++k) {
-            T2 = mul_add(q[k], t[k] * t[k], T2);
-            sum = sum + t[k];
-        }
+        for (int k = 1; k < 4; ++k) T2 = mul_add(q[k], t[k] * t[k], T2);
         const V shared = (m.w[0] * m.w[0]) * ((1 / (most_cancelled * most_cancelled)) * T2);
         V least = shared;
         HOL_UNROLL
@@ -149,7 +144,7 @@ struct Star<4, V> {
         MaskOf<V> fine = ~less(least, V{});
         const MaskOf<V> light = is_light();
         if (__builtin_expect(any(light), 0)) fine = (fine & ~light) | (light & equations.keeps_digits(q, y));
-        return finite(sum) & fine & is_regular();
+        return finite(T2) & fine & is_regular();
     }
 
     // The pulls on a light centre are small beside their terms, and take away most of its force; those on another one

@@ -135,7 +135,7 @@ struct BatchLinear : BatchTrees {
     __attribute__((noinline)) mask finite_in(const Range &range) const {
         vec sum = {}, sum_of_squares = {}, least = splat(1);
         for (int32_t p = range.row; p < range.end_row; ++p) {
-            sum = sum + abs(row[p].t);
+            sum = mul_add(row[p].t, vec{}, sum);
             sum_of_squares = sum_of_squares + row[p].q;
             least = min(select(lanes_of(f.held[p]), row[p].q, splat(1)), least);
         }
