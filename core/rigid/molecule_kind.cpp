@@ -219,7 +219,7 @@ private:
                 maker.add(static_cast<std::int32_t>(k), number[at(other)]);
             maker.end_column(static_cast<std::int32_t>(k));
         }
-        const Fill fill = maker.made();
+        const Fill fill = sorted(maker.made());
         s_.column_start = fill.column_start;
         s_.row = fill.row;
         write_rows(order);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <cstring>
 #include <vector>
 
 #include "core/index.hpp"
@@ -9,6 +10,13 @@
 namespace holonomic {
 
 using Numbers = std::vector<std::int32_t>;
+
+// So many that are -1: of what has no number yet. Its bytes are set, which is faster than number by number.
+inline Numbers minus_ones(std::int32_t n) {
+    Numbers numbers(at(n));
+    if (n > 0) std::memset(numbers.data(), 0xff, numbers.size() * sizeof numbers[0]);
+    return numbers;
+}
 
 struct Lists {
     Numbers start, item;

@@ -29,8 +29,8 @@ void sort_short(std::int32_t *first, std::int32_t *end) {
 // Rows by degree, in doubly linked lists: taking the first of the least degree and moving a row cost nothing.
 class Degrees {
 public:
-    Degrees(std::size_t n, Ties ties)
-        : ties_(ties), first_(n + 1, -1), last_(n + 1, -1), next_(n, -1), before_(n, -1), degree_(n, -1) {}
+    Degrees(std::int32_t n, Ties ties)
+        : ties_(ties), first_(minus_ones(n + 1)), last_(minus_ones(n + 1)), next_(at(n)), before_(at(n)), degree_(at(n)) {}
 
     void insert(std::int32_t i, std::size_t degree) {
         const bool front = ties_ == Ties::latest;
@@ -107,9 +107,9 @@ private:
 Numbers minimum_degree(Lists neighbours, Ties ties, std::int64_t most_bytes) {
     GrowingRows rows(std::move(neighbours));
     const std::int32_t n = rows.count();
-    Degrees degrees(at(n), ties);
+    Degrees degrees(n, ties);
     for (std::int32_t i = n; i-- > 0;) degrees.insert(i, at(rows.size(i)));
-    Rows order(at(n)), seen(at(n), -1), front;
+    Rows order(at(n)), seen = minus_ones(n), front;
     std::int64_t bytes = 0;
     for (std::int32_t &place : order) {
         const std::int32_t k = place = degrees.take_least();
@@ -138,26 +138,33 @@ Numbers minimum_degree(Lists neighbours, Ties ties, std::int64_t most_bytes) {
     return order;
 }
 
-void order_bonds(const Lists &bonds, const std::int32_t *atom_i, const std::int32_t *atom_j, const Numbers &core,
-                 const Numbers &number, Ties ties, std::int64_t most_bytes, Numbers &order) {
+Lists neighbours_of(const Lists &bonds, const std::int32_t *atom_i, const std::int32_t *atom_j, const Numbers &core,
+                    const Numbers &number) {
     Lists neighbours;
+    neighbours.start.assign(1, 0);
     neighbours.start.reserve(core.size() + 1);
-    neighbours.item.reserve(4 * core.size());
-    neighbours.start.push_back(0);
+    neighbours.item.resize(4 * core.size());
+    std::size_t n = 0;
     for (const std::int32_t k : core) {
-        for (const std::int32_t i : {atom_i[k], atom_j[k]})
-            for (const std::int32_t *l = bonds.begin(i); l != bonds.end(i); ++l)
-                if (*l != k && number[at(*l)] >= 0) neighbours.item.push_back(number[at(*l)]);
-        check_count(static_cast<std::int64_t>(neighbours.item.size()));
-        neighbours.start.push_back(static_cast<std::int32_t>(neighbours.item.size()));
+        for (const std::int32_t i : {atom_i[k], atom_j[k]}) {
+            if (n + at(bonds.size(i)) > neighbours.item.size()) neighbours.item.resize(2 * n + at(bonds.size(i)));
+            for (const std::int32_t *l = bonds.begin(i), *const end = bonds.end(i); l != end; ++l) {
+                const std::int32_t other = number[at(*l)];
+                neighbours.item[n] = other;
+                n += (*l != k) & (other >= 0);
+            }
+        }
+        check_count(static_cast<std::int64_t>(n));
+        neighbours.start.push_back(static_cast<std::int32_t>(n));
     }
-    for (const std::int32_t p : minimum_degree(std::move(neighbours), ties, most_bytes)) order.push_back(core[at(p)]);
+    neighbours.item.resize(n);
+    return neighbours;
 }
 
-FillMaker::FillMaker(std::int32_t n) : seen_(at(n), -1), child_(at(n), -1), next_child_(at(n), -1) {
+FillMaker::FillMaker(std::int32_t n) : seen_(minus_ones(n)), child_(minus_ones(n)), next_child_(at(n)) {
     fill_.column_start.reserve(at(n) + 1);
     fill_.column_start.push_back(0);
-    fill_.row.reserve(4 * at(n));
+    fill_.row.resize(4 * at(n));
 }
 
 void FillMaker::end_column(std::int32_t k) {
@@ -166,14 +173,26 @@ void FillMaker::end_column(std::int32_t k) {
         const std::size_t first = at(fill_.column_start[at(c)]), end = at(fill_.column_start[at(c) + 1]);
         for (std::size_t e = first + 1; e < end; ++e) add(k, fill_.row[e]);
     }
-    check_count(static_cast<std::int64_t>(fill_.row.size()));
-    const std::int32_t first = fill_.column_start.back(), end = static_cast<std::int32_t>(fill_.row.size());
-    fill_.column_start.push_back(end);
+    check_count(static_cast<std::int64_t>(n_));
+    std::int32_t *const first = fill_.row.data() + fill_.column_start.back(), *const end = fill_.row.data() + n_;
+    fill_.column_start.push_back(static_cast<std::int32_t>(n_));
     if (first == end) return;
-    sort_short(fill_.row.data() + first, fill_.row.data() + end);
-    const std::int32_t parent = fill_.row[at(first)];
-    next_child_[at(k)] = child_[at(parent)];
-    child_[at(parent)] = k;
+    std::int32_t *least = first;
+    for (std::int32_t *e = first + 1; e < end; ++e) least = *e < *least ? e : least;
+    std::swap(*first, *least);
+    next_child_[at(k)] = child_[at(*first)];
+    child_[at(*first)] = k;
+}
+
+Fill FillMaker::made() {
+    fill_.row.resize(n_);
+    return std::move(fill_);
+}
+
+Fill sorted(Fill fill) {
+    for (std::size_t k = 0; k + 1 < fill.column_start.size(); ++k)
+        sort_short(fill.row.data() + fill.column_start[k], fill.row.data() + fill.column_start[k + 1]);
+    return fill;
 }
 
 Fill in_order(const Fill &fill, const Numbers &order) {

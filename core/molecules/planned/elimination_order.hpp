@@ -29,12 +29,13 @@ constexpr std::int64_t bytes_of_column(std::int64_t entries) { return 4 * entrie
 enum class Ties { latest, first };
 Numbers minimum_degree(Lists neighbours, Ties ties = Ties::latest, std::int64_t most_bytes = no_limit);
 
-// Appends the bonds of `core`, which are those with a number, in the order of minimum degree: bonds meet at the atoms
-// atom_i, atom_j, which have the lists `bonds`.
-void order_bonds(const Lists &bonds, const std::int32_t *atom_i, const std::int32_t *atom_j, const Numbers &core,
-                 const Numbers &number, Ties ties, std::int64_t most_bytes, Numbers &order);
+// The neighbours of the bonds of `core`, which are those with a number: all that meet at the atoms atom_i, atom_j, which
+// have the lists `bonds`. By their numbers.
+Lists neighbours_of(const Lists &bonds, const std::int32_t *atom_i, const std::int32_t *atom_j, const Numbers &core,
+                    const Numbers &number);
 
-// The pattern of the factor below its diagonal for rows in the order of elimination, column by column, rows ascending.
+// The pattern of the factor below its diagonal for rows in the order of elimination, column by column, the least row of
+// each column first.
 struct Fill {
     Numbers column_start, row;
 };
@@ -45,34 +46,42 @@ class FillMaker {
 public:
     explicit FillMaker(std::int32_t n);
     void add(std::int32_t k, std::int32_t row) {
-        if (row <= k || seen_[at(row)] == k) return;
+        if (row > k && seen_[at(row)] != k) add_new(k, row);
+    }
+    // One behind k that column k does not have yet.
+    void add_new(std::int32_t k, std::int32_t row) {
         seen_[at(row)] = k;
-        fill_.row.push_back(row);
+        if (n_ == fill_.row.size()) fill_.row.resize(2 * n_ + 64);
+        fill_.row[n_++] = row;
     }
     void end_column(std::int32_t k);
-    Fill made() { return std::move(fill_); }
+    Fill made();
 
 private:
     Fill fill_;
+    std::size_t n_ = 0;  // entries so far
     Numbers seen_, child_, next_child_;
 };
 
-// Where rows are coupled that meet somewhere: meeting.begin(i) .. end(i) are those that meet at i, and row k is at
-// place(k, 0) and place(k, 1).
+// Where rows are coupled that meet somewhere, no two of them twice: meeting.begin(i) .. end(i), ascending, are those
+// that meet at i, and row k is at place(k, 0) and place(k, 1).
 template <class Place>
 Fill fill_of(const Lists &meeting, std::int32_t n, const Place &place) {
     FillMaker maker(n);
+    Numbers next = meeting.start;  // of each list the first row that is not eliminated
     for (std::int32_t k = 0; k < n; ++k) {
         for (int end = 0; end < 2; ++end) {
-            const std::int32_t i = place(k, end);
-            for (const std::int32_t *row = meeting.begin(i); row != meeting.end(i); ++row) maker.add(k, *row);
+            const std::int32_t i = place(k, end), behind = meeting.start[at(i) + 1];
+            for (std::int32_t e = ++next[at(i)]; e < behind; ++e) maker.add_new(k, meeting.item[at(e)]);
         }
         maker.end_column(k);
     }
     return maker.made();
 }
 
-// The same in another order that fills as much: its columns by their numbers here.
+// The same with all rows of each column ascending.
+Fill sorted(Fill fill);
+// And in another order that fills as much: its columns by their numbers here.
 Fill in_order(const Fill &fill, const Numbers &order);
 
 }  // namespace holonomic

@@ -79,17 +79,19 @@ void make_extended_too(EliminationPlan &s, std::int64_t most_bytes) {
 std::unique_ptr<const EliminationPlan> make_elimination_plan(std::int32_t n_atoms, std::int32_t n_bonds,
                                                              const std::int32_t *pairs, const unsigned char *fixed,
                                                              std::int64_t most_bytes, EliminationWork *work) {
-    EliminationWork own;
+    EliminationWork own, &w = work ? *work : own;
     std::unique_ptr<EliminationPlan> s =
-        bare_plan(n_atoms, n_bonds, pairs, fixed, most_bytes, EliminationPlanner::molecule, work ? *work : own);
+        bare_plan(n_atoms, n_bonds, pairs, fixed, most_bytes, EliminationPlanner::molecule, w);
     EliminationPlan::Memory &m = *s->memory;
     if (s->network) {
         if (const std::int64_t most = most_bytes_of_extended(*s)) make_extended_too(*s, std::min(most_bytes, most));
     } else {
         if (is_large_tree(*s)) add_large_tree(*s, m.of_large());
         if (takes_ldl(*s)) {
-            make_ldl_plan(*s, m.of_large().ldl);
-            s->ldl = &m.large->ldl.list;
+            LdlArrays &arrays = m.of_large().ldl;
+            s->n_core > 0 ? make_ldl_plan(*s, std::move(w.bonds), std::move(w.leaves_first), arrays)
+                          : make_ldl_plan(*s, std::move(w.bonds), arrays);
+            s->ldl = &arrays.list;
         }
         if (may_have_paths(*s) && make_path_plan(*s, m.of_large().paths)) s->paths = &m.large->paths.plan;
     }
@@ -117,7 +119,9 @@ std::mutex late_mutex;  // of what is made late
 void make_list_of_kept(const EliminationPlan &s) {
     const std::lock_guard<std::mutex> lock(late_mutex);
     if (s.way.given != Way::large_tree || list_of_kept(s) || !has_short_ldl(s)) return;
-    make_ldl_plan(s, s.memory->of_large().ldl);
+    Lists bonds =
+        invert(s.n_atoms, s.n_bonds, [&](std::int32_t k, int end) { return (end ? s.atom_j : s.atom_i)[k]; });
+    make_ldl_plan(s, std::move(bonds), s.memory->of_large().ldl);
     s.late_ldl = &s.memory->large->ldl.list;
 }
 

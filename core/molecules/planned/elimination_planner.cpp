@@ -35,7 +35,7 @@ void EliminationPlanner::make() {
 // each other away; the one that is left is the atom with the largest number of those that had one bond. Of trees in
 // lanes, from which atoms are taken at all ends at once, it is the centre, and they hang from a leaf near it.
 void EliminationPlanner::strip() {
-    Numbers &degree = m_.degree, &leaves = m_.stack;
+    Numbers &degree = m_.degree, &leaves = m_.leaves;
     degree.resize(at(s_.n_atoms));
     leaves.clear();
     leaves.reserve(at(s_.n_atoms));
@@ -135,7 +135,7 @@ void EliminationPlanner::number_ring() {
 }
 
 void EliminationPlanner::number_core() {
-    Numbers core, core_number(at(s_.n_bonds), -1);
+    Numbers core, core_number = minus_ones(s_.n_bonds);
     for (std::int32_t k = 0; k < s_.n_bonds; ++k) {
         const std::int32_t i = m_.atom_i[at(k)], j = m_.atom_j[at(k)];
         if (upper_bond_[at(i)] == k || upper_bond_[at(j)] == k) continue;
@@ -156,7 +156,16 @@ void EliminationPlanner::number_core() {
 
 void EliminationPlanner::order_core(const Numbers &core, const Numbers &core_number, std::int64_t most_bytes) {
     check_atoms(core, most_bytes);
-    order_bonds(bonds_, m_.atom_i.data(), m_.atom_j.data(), core, core_number, Ties::latest, most_bytes, m_.bond_of);
+    Lists neighbours = neighbours_of(bonds_, m_.atom_i.data(), m_.atom_j.data(), core, core_number);
+    Lists of_list;
+    if (for_ == molecule) of_list = neighbours;
+    for (const std::int32_t p : minimum_degree(std::move(neighbours), Ties::latest, most_bytes))
+        m_.bond_of.push_back(core[at(p)]);
+    if (for_ != molecule) return;
+    // The list takes the bonds of trees as they came free, so that no bond waits for more others than it must.
+    m_.leaves_first.reserve(at(s_.n_bonds));
+    for (const std::int32_t i : m_.leaves) m_.leaves_first.push_back(upper_bond_[at(i)]);
+    for (const std::int32_t p : minimum_degree(std::move(of_list), Ties::first)) m_.leaves_first.push_back(core[at(p)]);
 }
 
 // At atoms with other than two bonds of the core, or with trees.
@@ -226,8 +235,9 @@ Lists EliminationPlanner::meetings() const {
 
 // The factor's pattern.
 void EliminationPlanner::list_fill(const Lists &meeting) {
-    Fill fill = fill_of(meeting, s_.n_core,
-                        [&](std::int32_t p, int end) { return (end ? m_.to : m_.from)[at(p)] - s_.n_tree; });
+    Fill fill = sorted(fill_of(meeting, s_.n_core, [&](std::int32_t p, int end) {
+        return (end ? m_.to : m_.from)[at(p)] - s_.n_tree;
+    }));
     m_.column_start = std::move(fill.column_start);
     m_.row = std::move(fill.row);
 }

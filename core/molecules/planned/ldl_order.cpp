@@ -221,13 +221,6 @@ Numbers bonds_from_the_leaves(const EliminationPlan &s, const Lists &bonds) {
             const std::int32_t other = s.atom_i[*k] == leaves[next] ? s.atom_j[*k] : s.atom_i[*k];
             if (--left[at(other)] == 1) leaves.push_back(other);
         }
-    Numbers core, number(at(s.n_bonds), -1);
-    for (std::int32_t k = 0; k < s.n_bonds; ++k) {
-        if (gone[at(k)]) continue;
-        number[at(k)] = static_cast<std::int32_t>(core.size());
-        core.push_back(k);
-    }
-    order_bonds(bonds, s.atom_i, s.atom_j, core, number, Ties::first, no_limit, order);
     return order;
 }
 

@@ -7,8 +7,8 @@
 
 namespace holonomic {
 
-// The bonds of trees as they come free when all atoms with one bond are taken away, and again, so that no bond waits
-// for more others than it must; then those of the core, by minimum degree. `bonds` of each atom.
+// The bonds of a tree as they come free when all atoms with one bond are taken away, and again, so that no bond waits
+// for more others than it must. `bonds` of each atom.
 Numbers bonds_from_the_leaves(const EliminationPlan &s, const Lists &bonds);
 
 // The columns of a factor in another order with the same fill: what depends on each other stands near each other, a

@@ -21,12 +21,10 @@ void pad(Numbers &list, std::int32_t inert) {
 
 class LdlPlanMaker {
 public:
-    LdlPlanMaker(const EliminationPlan &s, LdlArrays &a)
-        : s_(s), a_(a), bonds_(invert(s.n_atoms, s.n_bonds,
-                                      [&](std::int32_t k, int end) { return (end ? s.atom_j : s.atom_i)[k]; })) {}
+    LdlPlanMaker(const EliminationPlan &s, Lists &&bonds, LdlArrays &a) : s_(s), a_(a), bonds_(std::move(bonds)) {}
 
-    void make() {
-        put_in_order();
+    void make(Numbers &&leaves_first) {
+        put_in_order(std::move(leaves_first));
         open_tiles();
         for (Tile &t : a_.tile) list_bonds(t);
         list_homes();
@@ -47,23 +45,22 @@ private:
             end_[at(2 * p + 1)] = s_.atom_j[a_.bond_of[at(p)]];
         }
     }
-    // The bonds of each atom by other numbers: `order` has those they have now.
-    void renumber(const Numbers &order) {
-        Numbers place(order.size());
-        for (std::size_t p = 0; p < order.size(); ++p) place[at(order[p])] = static_cast<std::int32_t>(p);
-        for (std::int32_t &k : bonds_.item) k = place[at(k)];
+    // The bonds of each atom by their columns, ascending.
+    void list_columns() {
+        Numbers next = bonds_.start;
+        for (std::int32_t p = 0; p < s_.n_bonds; ++p)
+            for (int end = 0; end < 2; ++end) bonds_.item[at(next[at(end_of(p, end))]++)] = p;
     }
 
-    void put_in_order() {
-        const Numbers leaves_first = bonds_from_the_leaves(s_, bonds_);
-        renumber(leaves_first);
+    void put_in_order(Numbers leaves_first) {
         a_.bond_of = leaves_first;
         list_ends();
+        list_columns();
         const Fill filled = fill_of(bonds_, s_.n_bonds, [&](std::int32_t p, int end) { return end_of(p, end); });
         const ListOrder made = order_of_list(filled);
-        renumber(made.column);
         for (std::size_t p = 0; p < made.column.size(); ++p) a_.bond_of[p] = leaves_first[at(made.column[p])];
         list_ends();
+        list_columns();
         Fill fill = in_order(filled, made.column);
         start_ = std::move(fill.column_start);
         row_ = std::move(fill.row);
@@ -326,7 +323,7 @@ private:
 
     const EliminationPlan &s_;
     LdlArrays &a_;
-    Lists bonds_;                 // of an atom; by their columns as soon as these have an order
+    Lists bonds_;                 // of an atom, by their columns as soon as these have an order
     Numbers end_;                 // [][2] atoms of a column
     Numbers start_, row_;         // of the factor's columns
     Numbers subtree_end_;         // columns
@@ -342,6 +339,13 @@ private:
 
 }  // namespace
 
-void make_ldl_plan(const EliminationPlan &s, LdlArrays &arrays) { LdlPlanMaker(s, arrays).make(); }
+void make_ldl_plan(const EliminationPlan &s, Lists bonds, Numbers leaves_first, LdlArrays &arrays) {
+    LdlPlanMaker(s, std::move(bonds), arrays).make(std::move(leaves_first));
+}
+
+void make_ldl_plan(const EliminationPlan &s, Lists bonds, LdlArrays &arrays) {
+    Numbers leaves_first = bonds_from_the_leaves(s, bonds);
+    make_ldl_plan(s, std::move(bonds), std::move(leaves_first), arrays);
+}
 
 }  // namespace holonomic

@@ -19,8 +19,10 @@ struct LdlArrays {
     LdlPlan list;
 };
 
-// Of a molecule whose bonds have been numbered: trees first, then the core in its order. Throws std::length_error where
-// the factor fills up to 2^31 entries.
-void make_ldl_plan(const EliminationPlan &s, LdlArrays &arrays);
+// `bonds` of each atom, and all bonds in an order of elimination that fills little: those of trees come first, so that
+// none waits for more others than it must. Throws std::length_error where the factor fills up to 2^31 entries.
+void make_ldl_plan(const EliminationPlan &s, Lists bonds, Numbers leaves_first, LdlArrays &arrays);
+// Of a tree.
+void make_ldl_plan(const EliminationPlan &s, Lists bonds, LdlArrays &arrays);
 
 }  // namespace holonomic

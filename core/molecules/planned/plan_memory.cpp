@@ -42,14 +42,15 @@ void point_into(EliminationPlan &s, const EliminationWork &work) {
 void clear(EliminationWork &work) {
     EliminationPlan any;
     for_arrays(any, work, [](auto &, auto &list) { list.clear(); });
+    work.leaves_first.clear();
 }
 
 // What a large one was made in is given back at once.
 void pack(EliminationPlan &s, EliminationWork &work) {
     if (s.n_bonds > largest_in_lanes) {
-        for (Numbers *const list :
-             {&work.bonds.start, &work.bonds.item, &work.upper_bond, &work.degree, &work.stack, &work.next})
+        for (Numbers *const list : {&work.upper_bond, &work.degree, &work.leaves, &work.stack, &work.next})
             Numbers().swap(*list);
+        if (s.n_core > 0 && work.leaves_first.empty()) work.bonds = {};
     }
     std::size_t bytes = 0;
     for_arrays(s, work, [&](auto &, const auto &list) { bytes += list.size() * sizeof list[0]; });

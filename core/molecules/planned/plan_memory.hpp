@@ -21,7 +21,8 @@ struct EliminationWork {
     std::vector<std::uint8_t> fixed;
 
     Lists bonds;  // of each atom
-    Numbers upper_bond, degree, stack, next;
+    Numbers upper_bond, degree, leaves, stack, next;
+    Numbers leaves_first;  // bonds of a graph that has a list, as this eliminates them
 };
 
 struct EliminationPlan::Memory {
@@ -45,7 +46,7 @@ struct EliminationPlan::Memory {
 
 // Lets an elimination plan point to its arrays, all but those of large molecules.
 void point_into(EliminationPlan &s, const EliminationWork &work);
-// Moves them into the block of its memory.
+// Moves them into the block of its memory. Keeps what a list is made from.
 void pack(EliminationPlan &s, EliminationWork &work);
 void clear(EliminationWork &work);
 

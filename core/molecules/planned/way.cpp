@@ -116,7 +116,10 @@ bool fills_lanes(const EliminationPlan &s, std::int64_t places) {
     return places <= 3 * static_cast<std::int64_t>(s.n_bonds);
 }
 
-bool takes_ldl(const EliminationPlan &s) { return !moves_as_batch(s) && has_short_ldl(s); }
+// A graph that would have a long list is a network.
+bool takes_ldl(const EliminationPlan &s) {
+    return !moves_as_batch(s) && (s.type == EliminationPlan::graph || has_short_ldl(s));
+}
 bool may_have_paths(const EliminationPlan &s) { return !moves_as_batch(s) && s.n_bonds > largest_in_lanes; }
 
 void choose_ways(EliminationPlan &s) {
