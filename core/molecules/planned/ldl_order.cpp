@@ -13,39 +13,43 @@ namespace {
 std::int32_t entries_of(const Fill &fill, std::int32_t k) {
     return fill.column_start[at(k) + 1] - fill.column_start[at(k)];
 }
-// Of a column in the elimination's tree; -1: a root.
-std::int32_t parent_of(const Fill &fill, std::int32_t k) {
-    return entries_of(fill, k) > 0 ? fill.row[at(fill.column_start[at(k)])] : -1;
+
+// The elimination's tree: the parent of a column is its first row; -1: a root. With the size of each column and all
+// below it.
+struct Tree {
+    Numbers parent, size;
+    std::int32_t n() const { return static_cast<std::int32_t>(parent.size()); }
+};
+
+Tree tree_of(const Fill &fill) {
+    const std::int32_t n = static_cast<std::int32_t>(fill.column_start.size()) - 1;
+    Tree tree = {Numbers(at(n)), Numbers(at(n), 1)};
+    for (std::int32_t k = 0; k < n; ++k) {
+        const std::int32_t parent = entries_of(fill, k) > 0 ? fill.row[at(fill.column_start[at(k)])] : -1;
+        if (parent >= 0) tree.size[at(parent)] += tree.size[at(k)];
+        tree.parent[at(k)] = parent;
+    }
+    return tree;
 }
 
-// Of each column with all below it.
-Numbers sizes_of(const Fill &fill) {
-    Numbers size(fill.column_start.size() - 1, 1);
-    for (std::int32_t k = 0; at(k) < size.size(); ++k)
-        if (const std::int32_t parent = parent_of(fill, k); parent >= 0) size[at(parent)] += size[at(k)];
-    return size;
-}
-
-// A post-order of the tree in which the parent of a column is its first row. Of what hangs below a column the largest
-// part comes first, so that the rest stands next to it. Each part has as many places as columns, so that these are
-// given from the largest part to the smallest.
-Numbers post_order(const Fill &fill, const Numbers &size) {
-    const std::int32_t n = static_cast<std::int32_t>(size.size());
+// A post-order of the tree. Of what hangs below a column the largest part comes first, so that the rest stands next to
+// it. Each part has as many places as columns, so that these are given from the largest part to the smallest.
+Numbers post_order(const Tree &tree) {
+    const Numbers &size = tree.size, &parent = tree.parent;
+    const std::int32_t n = tree.n();
     Numbers start(at(n) + 2), by_size(at(n)), next(at(n)), order(at(n));  // next: the first free place of a part
     for (const std::int32_t k : size) ++start[at(k) + 1];
     for (std::int32_t k = 0; k < n; ++k) start[at(k) + 1] += start[at(k)];
-    for (std::int32_t k = 0; k < n; ++k) by_size[at(start[at(size[at(k)])]++)] = k;
     std::int32_t used = 0;
-    for (std::int32_t k = 0; k < n; ++k)
-        if (parent_of(fill, k) < 0) {
-            next[at(k)] = used;
-            used += size[at(k)];
-        }
+    for (std::int32_t k = 0; k < n; ++k) {
+        by_size[at(start[at(size[at(k)])]++)] = k;
+        if (parent[at(k)] < 0) next[at(k)] = std::exchange(used, used + size[at(k)]);
+    }
     for (std::int32_t i = n; i-- > 0;) {
-        const std::int32_t k = by_size[at(i)], parent = parent_of(fill, k);
-        if (parent >= 0) {
-            next[at(k)] = next[at(parent)];
-            next[at(parent)] += size[at(k)];
+        const std::int32_t k = by_size[at(i)], above = parent[at(k)];
+        if (above >= 0) {
+            next[at(k)] = next[at(above)];
+            next[at(above)] += size[at(k)];
         }
         order[at(next[at(k)] + size[at(k)] - 1)] = k;
     }
@@ -54,7 +58,8 @@ Numbers post_order(const Fill &fill, const Numbers &size) {
 
 // Subtrees of at most `most` columns: of the tree what hangs from larger parts, which are the separator. Parts that
 // follow each other share a subtree. Of a subtree that is no multiple of four the last columns go to the separator.
-ListOrder cut(const Fill &fill, const Numbers &order, const Numbers &size, std::int32_t most) {
+ListOrder cut(const Tree &tree, const Numbers &order, std::int32_t most) {
+    const Numbers &size = tree.size;
     ListOrder cut;
     Numbers separator;
     std::int32_t first = 0;
@@ -71,7 +76,7 @@ ListOrder cut(const Fill &fill, const Numbers &order, const Numbers &size, std::
             continue;
         }
         cut.column.push_back(k);
-        const std::int32_t parent = parent_of(fill, k), n = static_cast<std::int32_t>(cut.column.size());
+        const std::int32_t parent = tree.parent[at(k)], n = static_cast<std::int32_t>(cut.column.size());
         if ((parent < 0 || size[at(parent)] > most) && n - first > most) end_subtree(n - size[at(k)]);
     }
     end_subtree(static_cast<std::int32_t>(cut.column.size()));
@@ -81,15 +86,14 @@ ListOrder cut(const Fill &fill, const Numbers &order, const Numbers &size, std::
 
 // As many subtrees as there can be while the separator is little, by the molecule alone; none of one that is too small
 // for two threads. In a separator one column waits for the next: of a protein it takes tens of ns for each.
-ListOrder in_subtrees(const Fill &fill) {
+ListOrder in_subtrees(const Tree &tree) {
     constexpr std::int32_t shortest = 8192, shortest_subtree = 2048;
-    const Numbers size = sizes_of(fill);
-    Numbers order = post_order(fill, size);
-    const std::int32_t n = static_cast<std::int32_t>(size.size()), longest_separator = std::max(n / 256, 64);
+    Numbers order = post_order(tree);
+    const std::int32_t n = tree.n(), longest_separator = std::max(n / 256, 64);
     for (const double part : {1 / 16., 1 / 8., 1 / 4., 1 / 2., 2 / 3.}) {
         const std::int32_t most = std::max(shortest_subtree, static_cast<std::int32_t>(part * n));
-        const auto separator = std::count_if(size.begin(), size.end(), [&](std::int32_t k) { return k > most; });
-        if (n >= shortest && separator <= longest_separator) return cut(fill, order, size, most);
+        const auto separator = std::count_if(tree.size.begin(), tree.size.end(), [&](std::int32_t k) { return k > most; });
+        if (n >= shortest && separator <= longest_separator) return cut(tree, order, most);
     }
     return {std::move(order), {}};
 }
@@ -109,8 +113,10 @@ public:
     }
     bool empty() const { return word_.back() == 0; }
     void insert(std::size_t i) {
-        for (int level = 0; level < n_levels_; ++level, i /= 64)
-            word_[first_[level] + i / 64] |= std::uint64_t{1} << i % 64;
+        for (int level = 0; level < n_levels_; ++level, i /= 64) {
+            std::uint64_t &word = word_[first_[level] + i / 64];
+            if (std::exchange(word, word | std::uint64_t{1} << i % 64)) break;  // the levels above know of others there
+        }
     }
     std::size_t take() {
         std::size_t least = 0;
@@ -132,22 +138,24 @@ private:
 // farthest from the root among the next ones. Within a round by the number of entries. Each subtree by itself.
 class Rounds {
 public:
-    Rounds(const Fill &fill, const Numbers &order)
-        : fill_(fill), order_(order), waits_for_(order.size()), place_(order.size()), rank_(order.size()),
-          column_of_(order.size()), done_(order.size()), ready_(order.size()) {
-        Numbers depth(order.size()), start;
+    Rounds(const Fill &fill, const Tree &tree, const Numbers &order)
+        : order_(order), column_(order.size() + 1), place_of_(order.size()), ready_(order.size()) {
+        Numbers place(order.size()), depth(order.size()), start;
+        for (std::size_t p = 0; p < order.size(); ++p) place[at(order[p])] = static_cast<std::int32_t>(p);
         for (std::size_t p = order.size(); p-- > 0;) {
-            place_[at(order[p])] = static_cast<std::int32_t>(p);
-            const std::int32_t k = order[p], parent = parent_of(fill, k);
+            const std::int32_t above = tree.parent[at(order[p])], parent = above < 0 ? -1 : place[at(above)];
             const std::int32_t d = parent < 0 ? 0 : depth[at(parent)] + 1;
-            if (parent >= 0) ++waits_for_[at(parent)];
-            depth[at(k)] = d;
+            column_[p].parent = parent;
+            column_[p].entries = entries_of(fill, order[p]);
+            if (parent >= 0) ++column_[at(parent)].waits_for;
+            depth[p] = d;
             if (start.size() <= at(d)) start.resize(at(d) + 1);
             ++start[at(d)];
         }
         std::int32_t n = 0;  // by depth, the deepest first, and of equally deep ones the first
         for (std::size_t d = start.size(); d-- > 0;) n += std::exchange(start[d], n);
-        for (const std::int32_t k : order) column_of_[at(rank_[at(k)] = start[at(depth[at(k)])]++)] = k;
+        for (std::size_t p = 0; p < order.size(); ++p)
+            place_of_[at(column_[p].rank = start[at(depth[p])]++)] = static_cast<std::int32_t>(p);
     }
 
     // Of the columns up to `end`, after those before.
@@ -157,28 +165,36 @@ public:
             advance(end);
             std::size_t n = 0;
             while (n < most_in_round && !ready_.empty()) {
-                const std::int32_t k = column_of_[ready_.take()];
-                done_[at(place_[at(k)])] = 1;
-                round[n++] = k;
+                const std::int32_t p = place_of_[ready_.take()];
+                column_[at(p)].waits_for = done;
+                round[n++] = p;
             }
             add_by_entries(round, n, made);
-            for (std::size_t i = 0; i < n; ++i) release(parent_of(fill_, round[i]));
+            for (std::size_t i = 0; i < n; ++i) release(column_[at(round[i])].parent);
         }
     }
 
 private:
     static constexpr std::size_t most_in_round = 32, columns_ahead = 8192;
+    static constexpr std::int32_t done = -1;
+
+    // By its place in the order.
+    struct Column {
+        std::int32_t parent, entries;
+        std::int32_t waits_for;  // so many columns, or `done`
+        std::int32_t rank;       // which of those that are ready comes first
+    };
 
     // Those with the fewest first, then those with the next number, as they stand: there are few numbers, and no branch
     // that a processor could not foresee.
     void add_by_entries(const std::int32_t *round, std::size_t n, Numbers &made) const {
         std::int32_t entries[most_in_round], sorted[most_in_round + 1];
-        for (std::size_t i = 0; i < n; ++i) entries[i] = entries_of(fill_, round[i]);
+        for (std::size_t i = 0; i < n; ++i) entries[i] = column_[at(round[i])].entries;
         std::size_t m = 0;
         for (std::int32_t least = *std::min_element(entries, entries + n), next; m < n; least = next) {
             next = std::numeric_limits<std::int32_t>::max();
             for (std::size_t i = 0; i < n; ++i) {
-                sorted[m] = round[i];
+                sorted[m] = order_[at(round[i])];
                 m += entries[i] == least;
                 next = entries[i] > least ? std::min(next, entries[i]) : next;
             }
@@ -187,19 +203,17 @@ private:
     }
     // To the first column that is not done, and as far ahead of it as may be looked.
     void advance(std::size_t end) {
-        while (done_[first_]) ++first_;
+        while (column_[first_].waits_for == done) ++first_;
         for (; seen_ < std::min(end, first_ + columns_ahead); ++seen_)
-            if (waits_for_[at(order_[seen_])] == 0) ready_.insert(at(rank_[at(order_[seen_])]));
+            if (column_[seen_].waits_for == 0) ready_.insert(at(column_[seen_].rank));
     }
-    void release(std::int32_t k) {
-        if (k >= 0 && --waits_for_[at(k)] == 0 && at(place_[at(k)]) < seen_) ready_.insert(at(rank_[at(k)]));
+    void release(std::int32_t p) {
+        if (p >= 0 && --column_[at(p)].waits_for == 0 && at(p) < seen_) ready_.insert(at(column_[at(p)].rank));
     }
 
-    const Fill &fill_;
     const Numbers &order_;
-    Numbers waits_for_, place_, rank_;  // by column
-    Numbers column_of_;                 // by rank
-    std::vector<unsigned char> done_;   // by place in order_
+    std::vector<Column> column_;  // and one behind the last that is never done
+    Numbers place_of_;            // by rank
     std::size_t first_ = 0, seen_ = 0;
     LeastFirst ready_;  // ranks
 };
@@ -225,10 +239,11 @@ Numbers bonds_from_the_leaves(const EliminationPlan &s, const Lists &bonds) {
 }
 
 ListOrder order_of_list(const Fill &fill) {
-    const ListOrder order = in_subtrees(fill);
+    const Tree tree = tree_of(fill);
+    const ListOrder order = in_subtrees(tree);
     ListOrder made = {{}, order.subtree_end};
     made.column.reserve(order.column.size());
-    Rounds rounds(fill, order.column);
+    Rounds rounds(fill, tree, order.column);
     for (const std::int32_t end : order.subtree_end) rounds.make(at(end), made.column);
     rounds.make(order.column.size(), made.column);
     return made;
