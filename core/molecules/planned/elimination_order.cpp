@@ -143,11 +143,11 @@ Lists neighbours_of(const Lists &bonds, const std::int32_t *atom_i, const std::i
     Lists neighbours;
     neighbours.start.assign(1, 0);
     neighbours.start.reserve(core.size() + 1);
-    neighbours.item.resize(4 * core.size());
+    neighbours.item.reserve(4 * core.size());
     std::size_t n = 0;
     for (const std::int32_t k : core) {
         for (const std::int32_t i : {atom_i[k], atom_j[k]}) {
-            if (n + at(bonds.size(i)) > neighbours.item.size()) neighbours.item.resize(2 * n + at(bonds.size(i)));
+            if (n + at(bonds.size(i)) > neighbours.item.size()) neighbours.item.resize(n + at(bonds.size(i)) + 1024);
             for (const std::int32_t *l = bonds.begin(i), *const end = bonds.end(i); l != end; ++l) {
                 const std::int32_t other = number[at(*l)];
                 neighbours.item[n] = other;
@@ -164,7 +164,7 @@ Lists neighbours_of(const Lists &bonds, const std::int32_t *atom_i, const std::i
 FillMaker::FillMaker(std::int32_t n) : seen_(minus_ones(n)), child_(minus_ones(n)), next_child_(at(n)) {
     fill_.column_start.reserve(at(n) + 1);
     fill_.column_start.push_back(0);
-    fill_.row.resize(4 * at(n));
+    fill_.row.reserve(4 * at(n));
 }
 
 void FillMaker::end_column(std::int32_t k) {

@@ -51,7 +51,7 @@ public:
     // One behind k that column k does not have yet.
     void add_new(std::int32_t k, std::int32_t row) {
         seen_[at(row)] = k;
-        if (n_ == fill_.row.size()) fill_.row.resize(2 * n_ + 64);
+        if (n_ == fill_.row.size()) fill_.row.resize(n_ + 1024);
         fill_.row[n_++] = row;
     }
     void end_column(std::int32_t k);
