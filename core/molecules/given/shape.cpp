@@ -37,7 +37,7 @@ std::vector<std::int32_t> spanning_walk(std::int32_t n_atoms, std::int32_t n_bon
         stack.pop_back();
         for (std::int32_t a = start[at(i)]; a < start[at(i) + 1]; ++a) {
             const std::int32_t step = arms[at(a)];
-            const std::int32_t j = step < 0 ? pairs[2 * at(~step)] : pairs[2 * at(step) + 1];
+            const std::int32_t j = pairs[step < 0 ? 2 * at(~step) : 2 * at(step) + 1];
             if (reached[at(j)]) continue;
             reached[at(j)] = 1;
             walk.push_back(step);

@@ -23,7 +23,7 @@ public:
 private:
     bool stays(std::int32_t atom) const { return for_ == network && m_.fixed[at(atom)]; }
     std::int32_t other_end(std::int32_t bond, std::int32_t atom) const {
-        return m_.atom_i[at(bond)] == atom ? m_.atom_j[at(bond)] : m_.atom_i[at(bond)];
+        return m_.atom_i[at(bond)] ^ m_.atom_j[at(bond)] ^ atom;  // which of both it is, no processor could foresee
     }
     bool is_child(std::int32_t bond, std::int32_t atom) const { return upper_bond_[at(other_end(bond, atom))] == bond; }
 

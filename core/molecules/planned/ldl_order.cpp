@@ -61,6 +61,7 @@ Numbers post_order(const Tree &tree) {
 ListOrder cut(const Tree &tree, const Numbers &order, std::int32_t most) {
     const Numbers &size = tree.size;
     ListOrder cut;
+    cut.column.reserve(order.size());
     Numbers separator;
     std::int32_t first = 0;
     const auto end_subtree = [&](std::int32_t end) {
@@ -232,7 +233,7 @@ Numbers bonds_from_the_leaves(const EliminationPlan &s, const Lists &bonds) {
             if (gone[at(*k)]) continue;
             gone[at(*k)] = 1;
             order.push_back(*k);
-            const std::int32_t other = s.atom_i[*k] == leaves[next] ? s.atom_j[*k] : s.atom_i[*k];
+            const std::int32_t other = s.atom_i[*k] ^ s.atom_j[*k] ^ leaves[next];
             if (--left[at(other)] == 1) leaves.push_back(other);
         }
     return order;

@@ -204,23 +204,26 @@ private:
         const std::int32_t first_contribution = a_.list.n_columns;
         t.first_run = size_of(a_.run);
         std::size_t to = at(t.first_entry);
+        const auto add = [&](std::int32_t column, std::int32_t q, std::int32_t row) {
+            a_.row[to] = q;
+            a_.column_4[to] = 4 * column;
+            // Both point to or from the atom that they share; or one to it, one from it; or none is shared.
+            const std::int32_t i = from[column], j = to_atom[column], k = row < 0 ? -1 : from[row],
+                               l = row < 0 ? -1 : to_atom[row];
+            const bool same = (i == k) | (j == l), shares = same | (i == l) | (j == k);
+            a_.row_4[to] = shares ? 4 * row : 0;
+            a_.mass[to++] = shares ? (((i == k) | (i == l) ? i : j) >> 1) + same : none;
+        };
         for (std::int32_t p = t.first; p < t.end; ++p) {
-            const std::int32_t n = start_[at(p) + 1] - start_[at(p)];
-            if (size_of(a_.run) == t.first_run || a_.run.back().entries != n) a_.run.push_back({0, n});
+            std::int32_t e = start_[at(p)];
+            const std::int32_t end = start_[at(p) + 1];
+            if (size_of(a_.run) == t.first_run || a_.run.back().entries != end - e) a_.run.push_back({0, end - e});
             ++a_.run.back().columns;
-            const std::int32_t i = from[p - t.first], j = to_atom[p - t.first];
-            for (std::int32_t e = start_[at(p)]; e < start_[at(p) + 1]; ++e, ++to) {
-                const std::int32_t q = row_[at(e)], row = q < t.end ? q - t.first : row_of_[at(q)];
-                a_.row[to] = q < t.end
-                                 ? q
-                                 : contribution_of(q, first_contribution, a_.list.n_columns, contribution_of_, a_.late);
-                a_.column_4[to] = 4 * (p - t.first);
-                // Both point to or from the atom that they share; or one to it, one from it; or none is shared.
-                const std::int32_t k = row < 0 ? -1 : from[row], l = row < 0 ? -1 : to_atom[row];
-                const bool same = (i == k) | (j == l), shares = same | (i == l) | (j == k);
-                a_.row_4[to] = shares ? 4 * row : 0;
-                a_.mass[to] = shares ? (((i == k) | (i == l)) ? i : j) / 2 + same : none;
-            }
+            for (; e < end && row_[at(e)] < t.end; ++e) add(p - t.first, row_[at(e)], row_[at(e)] - t.first);
+            for (; e < end; ++e)
+                add(p - t.first,
+                    contribution_of(row_[at(e)], first_contribution, a_.list.n_columns, contribution_of_, a_.late),
+                    row_of_[at(row_[at(e)])]);
         }
         t.end_run = size_of(a_.run);
         for (; at(in_fours(t.end_entry)) > to; ++to) a_.mass[to] = none;
@@ -253,7 +256,8 @@ private:
                     to[at(i) * at(i - 1) / 2 + at(j)] = before + static_cast<std::int32_t>(e - row_.data());
                 }
             }
-            for (std::int32_t i = 1; n > 1 && row[n - 2] >= t.end && i < n; ++i)
+            const bool gives = n > 1 && row[n - 2] >= t.end;  // to entries of later tiles
+            for (std::int32_t i = 1; gives && i < n; ++i)
                 for (std::int32_t j = 0; j < i; ++j)
                     if (std::int32_t &e = to[at(i) * at(i - 1) / 2 + at(j)]; row[j] >= t.end)
                         e = contribution_of(e, first_contribution, a_.list.n_entries, contribution_of_, a_.late_entry);
@@ -278,7 +282,9 @@ private:
             t.first_late = late;
             t.first_late_entry = entry;
             t.first_outer = size_of(a_.outer);
-            for (std::int32_t p = t.first; p < t.end; ++p) {
+            const bool all_own = visiting_[at(&t - a_.tile.data())] == t.own_end - t.first_site,
+                       none_late = late == size_of(a_.late) || a_.late[at(late)].number >= t.end;
+            for (std::int32_t p = all_own && none_late ? t.end : t.first; p < t.end; ++p) {
                 const std::int32_t first = late;
                 while (late < size_of(a_.late) && a_.late[at(late)].number == p) ++late;
                 bool outer = late > first;
