@@ -17,19 +17,24 @@ using Numbers = std::vector<std::int32_t>;
 }  // namespace
 
 const BondList &checked(std::int64_t n_atoms, const BondList &list) {
-    for (std::int64_t e = 0; e < 2 * list.n_bonds; ++e) {
-        const std::int64_t atom = list.pairs[e];
-        if (atom < list.base || atom - list.base >= n_atoms) {
+    // Below the base a number without a sign is large.
+    const auto is_outside = [&](std::int64_t atom) {
+        return static_cast<std::uint64_t>(atom) - static_cast<std::uint64_t>(list.base) >=
+               static_cast<std::uint64_t>(n_atoms);
+    };
+    for (std::int64_t k = 0; k < list.n_bonds; ++k) {
+        const std::int64_t i = list.pairs[2 * k], j = list.pairs[2 * k + 1];
+        if (is_outside(i) || is_outside(j)) {
+            const std::int64_t atom = is_outside(i) ? i : j;
             Error error = make_error(Status::index, "bond %lld of the list: atom %lld is outside %d .. %lld",
-                                     static_cast<long long>(e / 2 + list.base), static_cast<long long>(atom), list.base,
+                                     static_cast<long long>(k + list.base), static_cast<long long>(atom), list.base,
                                      static_cast<long long>(n_atoms - 1 + list.base));
-            error.bond = e / 2;
+            error.bond = k;
             error.atom = atom < list.base ? -1 : atom - list.base;
             error.base = list.base;
             throw error;
         }
-        if (e % 2 == 1 && atom == list.pairs[e - 1])
-            throw bond_error(list, Status::value, e / 2, "joins an atom to itself");
+        if (i == j) throw bond_error(list, Status::value, k, "joins an atom to itself");
     }
     return list;
 }

@@ -113,7 +113,8 @@ Numbers minimum_degree(Lists neighbours, Ties ties, std::int64_t most_bytes) {
     std::int64_t bytes = 0;
     for (std::int32_t &place : order) {
         const std::int32_t k = place = degrees.take_least();
-        front.assign(rows.begin(k), rows.begin(k) + rows.size(k));
+        front.resize(at(rows.size(k)));
+        std::copy(rows.begin(k), rows.begin(k) + rows.size(k), front.begin());
         bytes += bytes_of_column(rows.size(k));
         if (bytes > most_bytes) throw TooMuchMemory(bytes);
         for (const std::int32_t i : front) {

@@ -20,6 +20,8 @@ constexpr std::int64_t no_limit = std::numeric_limits<std::int64_t>::max();
 // What a column with so many entries takes: the products that it gives to others, in two lists, and its entries there
 // and in the scratch of the solvers.
 constexpr std::int64_t bytes_of_column(std::int64_t entries) { return 4 * entries * (entries - 1) + 128 * entries; }
+// Of columns with 0 .. n - 1 entries.
+constexpr std::int64_t bytes_of_columns_below(std::int64_t n) { return n * (n - 1) * (n - 2) / 3 * 4 + 64 * n * (n - 1); }
 
 // Minimum degree: the row with the fewest neighbours first, its neighbours then being coupled to each other.
 // `neighbours` of each row without itself; they are used up. Of rows of equal degree the one that got it last is taken,

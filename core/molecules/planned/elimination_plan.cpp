@@ -87,7 +87,7 @@ std::unique_ptr<const EliminationPlan> make_elimination_plan(std::int32_t n_atom
         if (const std::int64_t most = most_bytes_of_extended(*s)) make_extended_too(*s, std::min(most_bytes, most));
     } else {
         if (is_large_tree(*s)) add_large_tree(*s, m.of_large());
-        if (takes_ldl(*s)) {
+        if (takes_ldl(*s, w.bonds)) {
             LdlArrays &arrays = m.of_large().ldl;
             s->n_core > 0 ? make_ldl_plan(*s, std::move(w.bonds), std::move(w.leaves_first), arrays)
                           : make_ldl_plan(*s, std::move(w.bonds), arrays);
@@ -118,9 +118,10 @@ std::mutex late_mutex;  // of what is made late
 
 void make_list_of_kept(const EliminationPlan &s) {
     const std::lock_guard<std::mutex> lock(late_mutex);
-    if (s.way.given != Way::large_tree || list_of_kept(s) || !has_short_ldl(s)) return;
+    if (s.way.given != Way::large_tree || list_of_kept(s)) return;
     Lists bonds =
         invert(s.n_atoms, s.n_bonds, [&](std::int32_t k, int end) { return (end ? s.atom_j : s.atom_i)[k]; });
+    if (!has_short_ldl(s, bonds)) return;
     make_ldl_plan(s, std::move(bonds), s.memory->of_large().ldl);
     s.late_ldl = &s.memory->large->ldl.list;
 }

@@ -142,10 +142,10 @@ void EliminationPlanner::number_core() {
         core_number[at(k)] = static_cast<std::int32_t>(core.size());
         core.push_back(k);
     }
-    const bool listed = has_short_ldl(s_);
+    const bool listed = has_short_ldl(s_, bonds_);
     if (for_ == junction || for_ == extended || (listed && s_.n_bonds <= largest_graph_in_lanes))
         return order_core(core, core_number, most_bytes_);
-    is_network_ = for_ == network || !listed || is_mostly_strands(s_, ends_of_strands(core));
+    is_network_ = for_ == network || !listed || is_mostly_strands(s_, ends_of_strands());
     try {
         if (!is_network_) return order_core(core, core_number, std::min(most_bytes_, most_bytes_of_ldl(s_)));
     } catch (const TooMuchMemory &) {
@@ -155,7 +155,7 @@ void EliminationPlanner::number_core() {
 }
 
 void EliminationPlanner::order_core(const Numbers &core, const Numbers &core_number, std::int64_t most_bytes) {
-    check_atoms(core, most_bytes);
+    check_atoms(most_bytes);
     Lists neighbours = neighbours_of(bonds_, m_.atom_i.data(), m_.atom_j.data(), core, core_number);
     Lists of_list;
     if (for_ == molecule) of_list = neighbours;
@@ -169,22 +169,19 @@ void EliminationPlanner::order_core(const Numbers &core, const Numbers &core_num
 }
 
 // At atoms with other than two bonds of the core, or with trees.
-std::int64_t EliminationPlanner::ends_of_strands(const Numbers &core) const {
-    Numbers degree(at(s_.n_atoms));
-    for (const std::int32_t k : core)
-        for (const std::int32_t i : {m_.atom_i[at(k)], m_.atom_j[at(k)]}) ++degree[at(i)];
+std::int64_t EliminationPlanner::ends_of_strands() const {
     std::int64_t ends = 0;
     for (std::int32_t i = 0; i < s_.n_atoms; ++i)
-        if (degree[at(i)] > 2 || bonds_.size(i) > 2) ends += degree[at(i)];
+        if (upper_bond_[at(i)] < 0 && (m_.degree[at(i)] > 2 || bonds_.size(i) > 2)) ends += m_.degree[at(i)];
     return ends;
 }
 
-// Bonds at one atom are all neighbours of each other: n of them fill at least what n columns do.
-void EliminationPlanner::check_atoms(const Numbers &core, std::int64_t most_bytes) const {
-    Numbers degree(at(s_.n_atoms));
+// Bonds at one atom are all neighbours of each other: n of them fill at least what n columns do, with 0 .. n - 1
+// entries.
+void EliminationPlanner::check_atoms(std::int64_t most_bytes) const {
     std::int64_t bytes = 0;
-    for (const std::int32_t k : core)
-        for (const std::int32_t i : {m_.atom_i[at(k)], m_.atom_j[at(k)]}) bytes += bytes_of_column(degree[at(i)]++);
+    for (std::int32_t i = 0; i < s_.n_atoms; ++i)
+        if (upper_bond_[at(i)] < 0) bytes += bytes_of_columns_below(m_.degree[at(i)]);
     if (bytes > most_bytes) throw TooMuchMemory(bytes);
 }
 

@@ -34,8 +34,8 @@ private:
     void number_ring();
     void number_core();
     void order_core(const Numbers &core, const Numbers &core_number, std::int64_t most_bytes);
-    std::int64_t ends_of_strands(const Numbers &core) const;
-    void check_atoms(const Numbers &core, std::int64_t most_bytes) const;
+    std::int64_t ends_of_strands() const;
+    void check_atoms(std::int64_t most_bytes) const;
     void invert_numbers();
     void list_children();
     Lists meetings() const;

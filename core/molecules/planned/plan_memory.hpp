@@ -21,7 +21,8 @@ struct EliminationWork {
     std::vector<std::uint8_t> fixed;
 
     Lists bonds;  // of each atom
-    Numbers upper_bond, degree, leaves, stack, next;
+    Numbers upper_bond, leaves, stack, next;
+    Numbers degree;        // of an atom, without the bonds to those that were taken away before it
     Numbers leaves_first;  // bonds of a graph that has a list, as this eliminates them
 };
 

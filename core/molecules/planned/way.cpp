@@ -81,18 +81,16 @@ bool is_ring(const EliminationPlan &s, std::int32_t most_trees) {
     return s.n_tree == 0 || (s.n_bonds <= largest_graph_in_lanes && most_trees <= most_on_ring);
 }
 
-bool has_short_ldl(const EliminationPlan &s) {
+bool has_short_ldl(const EliminationPlan &s, const Lists &bonds) {
     if (s.type != EliminationPlan::graph && !is_large_tree(s)) return false;
-    Numbers bonds(at(s.n_atoms));
-    for (std::int32_t k = 0; k < s.n_bonds; ++k)
-        for (const std::int32_t i : {s.atom_i[k], s.atom_j[k]}) ++bonds[at(i)];
-    std::int64_t updates = 0;
-    for (const std::int64_t n : bonds) {
+    std::int64_t updates = 0;  // six of them
+    for (std::int32_t i = 0; i < s.n_atoms; ++i) {
+        const std::int64_t n = bonds.size(i);
         if (n > most_bonds_at_atom) return false;
-        updates += n * (n - 1) / 2 * (n - 2) / 3;
+        updates += n * (n - 1) * (n - 2);
     }
     return s.n_bonds <= largest_in_ldl &&
-           updates <= std::max(short_list, updates_of_bond * static_cast<std::int64_t>(s.n_bonds));
+           updates / 6 <= std::max(short_list, updates_of_bond * static_cast<std::int64_t>(s.n_bonds));
 }
 
 bool is_mostly_strands(const EliminationPlan &s, std::int64_t ends) {
@@ -117,8 +115,8 @@ bool fills_lanes(const EliminationPlan &s, std::int64_t places) {
 }
 
 // A graph that would have a long list is a network.
-bool takes_ldl(const EliminationPlan &s) {
-    return !moves_as_batch(s) && (s.type == EliminationPlan::graph || has_short_ldl(s));
+bool takes_ldl(const EliminationPlan &s, const Lists &bonds) {
+    return !moves_as_batch(s) && (s.type == EliminationPlan::graph || has_short_ldl(s, bonds));
 }
 bool may_have_paths(const EliminationPlan &s) { return !moves_as_batch(s) && s.n_bonds > largest_in_lanes; }
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "core/molecules/given/lists.hpp"
 #include "core/plan/elimination.hpp"
 
 namespace holonomic {
@@ -11,8 +12,8 @@ namespace holonomic {
 // Whether a core of as many bonds as atoms goes round as a ring: `most_trees` hang from one of its atoms.
 bool is_ring(const EliminationPlan &s, std::int32_t most_trees);
 
-// Whether the list of a graph, or of a large tree, is not much longer than the molecule.
-bool has_short_ldl(const EliminationPlan &s);
+// Whether the list of a graph, or of a large tree, is not much longer than the molecule. `bonds` of each atom.
+bool has_short_ldl(const EliminationPlan &s, const Lists &bonds);
 
 // Whether a graph may be a network: `ends` of strands meet at its nodes.
 bool is_mostly_strands(const EliminationPlan &s, std::int64_t ends);
@@ -28,7 +29,7 @@ bool is_mostly_arms(const EliminationPlan &s, std::int64_t bonds_in_arms);
 bool fills_lanes(const EliminationPlan &s, std::int64_t places);
 
 // Whether a molecule needs a list, and whether paths are looked for.
-bool takes_ldl(const EliminationPlan &s);
+bool takes_ldl(const EliminationPlan &s, const Lists &bonds);
 bool may_have_paths(const EliminationPlan &s);
 
 // Says which way it takes, once all is made that the ways need.
