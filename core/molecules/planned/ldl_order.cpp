@@ -119,14 +119,21 @@ public:
             if (std::exchange(word, word | std::uint64_t{1} << i % 64)) break;  // the levels above know of others there
         }
     }
-    std::size_t take() {
-        std::size_t least = 0;
-        for (int level = n_levels_; level-- > 0;)
-            least = 64 * least + static_cast<std::size_t>(__builtin_ctzll(word_[first_[level] + least]));
-        std::size_t i = least / 64;
-        for (int level = 0; level < n_levels_; ++level, i /= 64)
-            if (word_[first_[level] + i] &= word_[first_[level] + i] - 1) break;  // it was the least there, too
-        return least;
+    // The least ones, at most so many; ascending. Returns how many there were.
+    std::size_t take(std::size_t *least, std::size_t most) {
+        std::size_t n = 0;
+        while (n < most && !empty()) {
+            std::size_t i = 0;
+            for (int level = n_levels_; level-- > 1;)
+                i = 64 * i + static_cast<std::size_t>(__builtin_ctzll(word_[first_[level] + i]));
+            std::uint64_t word = word_[i];
+            for (; word && n < most; word &= word - 1)
+                least[n++] = 64 * i + static_cast<std::size_t>(__builtin_ctzll(word));
+            word_[i] = word;
+            for (int level = 1; level < n_levels_ && word == 0; ++level, i /= 64)
+                word = word_[first_[level] + i / 64] &= word_[first_[level] + i / 64] - 1;  // it was the least there
+        }
+        return n;
     }
 
 private:
@@ -161,14 +168,14 @@ public:
 
     // Of the columns up to `end`, after those before.
     void make(std::size_t end, Numbers &made) {
+        std::size_t ranks[most_in_round];
         std::int32_t round[most_in_round];
         while (made.size() < end) {
             advance(end);
-            std::size_t n = 0;
-            while (n < most_in_round && !ready_.empty()) {
-                const std::int32_t p = place_of_[ready_.take()];
-                column_[at(p)].waits_for = done;
-                round[n++] = p;
+            const std::size_t n = ready_.take(ranks, most_in_round);
+            for (std::size_t i = 0; i < n; ++i) {
+                round[i] = place_of_[ranks[i]];
+                column_[at(round[i])].waits_for = done;
             }
             add_by_entries(round, n, made);
             for (std::size_t i = 0; i < n; ++i) release(column_[at(round[i])].parent);
