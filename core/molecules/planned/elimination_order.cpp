@@ -196,18 +196,16 @@ Fill sorted(Fill fill) {
     return fill;
 }
 
-Fill in_order(const Fill &fill, const Numbers &order) {
+Fill in_order(const Fill &fill, const Numbers &order, const Numbers &place) {
     Fill made;
     made.column_start.assign(1, 0);
     made.column_start.reserve(order.size() + 1);
     made.row.resize(fill.row.size());
-    Numbers number(order.size());
-    for (std::size_t p = 0; p < order.size(); ++p) number[at(order[p])] = static_cast<std::int32_t>(p);
     std::int32_t *end = made.row.data();
     for (const std::int32_t k : order) {
         std::int32_t *const first = end;
         for (std::int32_t e = fill.column_start[at(k)]; e < fill.column_start[at(k) + 1]; ++e)
-            *end++ = number[at(fill.row[at(e)])];
+            *end++ = place[at(fill.row[at(e)])];
         sort_short(first, end);
         made.column_start.push_back(static_cast<std::int32_t>(end - made.row.data()));
     }

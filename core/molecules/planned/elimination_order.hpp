@@ -83,7 +83,7 @@ Fill fill_of(const Lists &meeting, std::int32_t n, const Place &place) {
 
 // The same with all rows of each column ascending.
 Fill sorted(Fill fill);
-// And in another order that fills as much: its columns by their numbers here.
-Fill in_order(const Fill &fill, const Numbers &order);
+// And in another order that fills as much: its columns by their numbers here, and where each of these stands there.
+Fill in_order(const Fill &fill, const Numbers &order, const Numbers &place);
 
 }  // namespace holonomic

@@ -45,23 +45,22 @@ private:
             end_[at(2 * p + 1)] = s_.atom_j[a_.bond_of[at(p)]];
         }
     }
-    // The bonds of each atom by their columns, ascending.
-    void list_columns() {
-        Numbers next = bonds_.start;
-        for (std::int32_t p = 0; p < s_.n_bonds; ++p)
-            for (int end = 0; end < 2; ++end) bonds_.item[at(next[at(end_of(p, end))]++)] = p;
-    }
-
     void put_in_order(Numbers leaves_first) {
         a_.bond_of = leaves_first;
         list_ends();
-        list_columns();
+        // The bonds of each atom in this order, ascending.
+        Numbers next = bonds_.start;
+        for (std::int32_t p = 0; p < s_.n_bonds; ++p)
+            for (int end = 0; end < 2; ++end) bonds_.item[at(next[at(end_of(p, end))]++)] = p;
         const Fill filled = fill_of(bonds_, s_.n_bonds, [&](std::int32_t p, int end) { return end_of(p, end); });
         const ListOrder made = order_of_list(filled);
-        for (std::size_t p = 0; p < made.column.size(); ++p) a_.bond_of[p] = leaves_first[at(made.column[p])];
+        column_of_.resize(made.column.size());
+        for (std::size_t p = 0; p < made.column.size(); ++p) {
+            column_of_[at(made.column[p])] = static_cast<std::int32_t>(p);
+            a_.bond_of[p] = leaves_first[at(made.column[p])];
+        }
         list_ends();
-        list_columns();
-        Fill fill = in_order(filled, made.column);
+        Fill fill = in_order(filled, made.column, column_of_);
         start_ = std::move(fill.column_start);
         row_ = std::move(fill.row);
         subtree_end_ = made.subtree_end;
@@ -75,12 +74,16 @@ private:
         open_tiles(first, s_.n_bonds);
         a_.list.n_columns = static_cast<std::int32_t>(in_fours(s_.n_bonds));
         a_.site_of.resize(at(s_.n_atoms));
-        number_.assign(at(s_.n_atoms), -1);
+        number_ = minus_ones(s_.n_atoms);
         // An atom is at home in the first tile that has bonds of it.
-        home_.assign(at(s_.n_atoms), -1);
+        home_ = minus_ones(s_.n_atoms);
+        last_tile_.resize(at(s_.n_atoms));
         for (std::int32_t p = 0; p < s_.n_bonds; ++p)
-            for (int end = 0; end < 2; ++end)
-                if (std::int32_t &home = home_[at(end_of(p, end))]; home < 0) home = tile_of_[at(p)];
+            for (int end = 0; end < 2; ++end) {
+                std::int32_t &home = home_[at(end_of(p, end))];
+                last_tile_[at(end_of(p, end))] = tile_of_[at(p)];
+                home = home < 0 ? tile_of_[at(p)] : home;
+            }
         group(
             size_of(a_.tile),
             [&](const auto &give) {
@@ -114,8 +117,8 @@ private:
         const std::int32_t tile = tile_of_[at(t.first)], n = t.end - t.first;
         Numbers &extra = extra_[at(tile)], ghosts;
         const auto add_later_bonds = [&](std::int32_t i) {
-            for (const std::int32_t *q = bonds_.begin(i); q != bonds_.end(i); ++q)
-                if (*q >= t.end) extra.push_back(*q);
+            for (const std::int32_t *q = bonds_.begin(i); last_tile_[at(i)] > tile && q != bonds_.end(i); ++q)
+                if (column_of_[at(*q)] >= t.end) extra.push_back(column_of_[at(*q)]);
         };
         t.first_site = size_of(a_.atom_of);
         for (const std::int32_t *i = own_.begin(tile); i != own_.end(tile); ++i) {
@@ -177,7 +180,8 @@ private:
 
     // What the bonds and atoms of tiles were found with, before the longest lists are made.
     void give_back() {
-        for (Numbers *const list : {&bonds_.start, &bonds_.item, &own_.start, &own_.item, &number_, &home_})
+        for (Numbers *const list : {&bonds_.start, &bonds_.item, &own_.start, &own_.item, &number_, &home_, &last_tile_,
+                                    &column_of_})
             Numbers().swap(*list);
     }
 
@@ -191,8 +195,8 @@ private:
 
     void list_entries() {
         for (Numbers *const list : {&a_.row, &a_.row_4, &a_.column_4, &a_.mass}) list->resize(at(a_.list.n_entries));
-        contribution_of_.assign(at(s_.n_bonds), -1);
-        row_of_.assign(at(s_.n_bonds), -1);
+        contribution_of_ = minus_ones(s_.n_bonds);
+        row_of_ = minus_ones(s_.n_bonds);
         for (Tile &t : a_.tile) list_entries(t);
     }
     void list_entries(Tile &t) {
@@ -236,7 +240,7 @@ private:
             n_updates += n * (n - 1) / 2;
         }
         a_.update.resize(at(n_updates));
-        contribution_of_.assign(at(a_.list.n_entries), -1);
+        contribution_of_ = minus_ones(a_.list.n_entries);
         for (const Tile &t : a_.tile) entries_before_.push_back(t.first_entry - start_[at(t.first)]);
         std::int32_t *to = a_.update.data();
         for (Tile &t : a_.tile) to = list_updates(t, to);
@@ -329,7 +333,8 @@ private:
 
     const EliminationPlan &s_;
     LdlArrays &a_;
-    Lists bonds_;                 // of an atom, by their columns as soon as these have an order
+    Lists bonds_;                 // of an atom, as the leaves come first
+    Numbers column_of_;           // of a bond in that order
     Numbers end_;                 // [][2] atoms of a column
     Numbers start_, row_;         // of the factor's columns
     Numbers subtree_end_;         // columns
@@ -338,7 +343,8 @@ private:
     Numbers number_;              // of an atom in the tile that is listed
     Numbers entries_before_;      // by tile, inert ones
     Numbers visiting_;            // by tile, its atoms that its own bonds have
-    Numbers tile_of_, home_;      // tile of a column; of an atom
+    Numbers tile_of_;             // of a column
+    Numbers home_, last_tile_;    // of an atom; the last one that has bonds of it
     Numbers contribution_of_;     // the last one of a column, then of an entry
     Numbers row_of_;              // of a column among a tile's extra bonds
 };
