@@ -30,7 +30,8 @@ void sort_short(std::int32_t *first, std::int32_t *end) {
 class Degrees {
 public:
     Degrees(std::int32_t n, Ties ties)
-        : ties_(ties), first_(minus_ones(n + 1)), last_(minus_ones(n + 1)), next_(at(n)), before_(at(n)), degree_(at(n)) {}
+        : ties_(ties), first_(minus_ones(n + 1)), last_(minus_ones(n + 1)), next_(at(n)), before_(at(n)),
+          degree_(at(n)) {}
 
     void insert(std::int32_t i, std::size_t degree) {
         const bool front = ties_ == Ties::latest;

@@ -21,7 +21,9 @@ constexpr std::int64_t no_limit = std::numeric_limits<std::int64_t>::max();
 // and in the scratch of the solvers.
 constexpr std::int64_t bytes_of_column(std::int64_t entries) { return 4 * entries * (entries - 1) + 128 * entries; }
 // Of columns with 0 .. n - 1 entries.
-constexpr std::int64_t bytes_of_columns_below(std::int64_t n) { return n * (n - 1) * (n - 2) / 3 * 4 + 64 * n * (n - 1); }
+constexpr std::int64_t bytes_of_columns_below(std::int64_t n) {
+    return n * (n - 1) * (n - 2) / 3 * 4 + 64 * n * (n - 1);
+}
 
 // Minimum degree: the row with the fewest neighbours first, its neighbours then being coupled to each other.
 // `neighbours` of each row without itself; they are used up. Of rows of equal degree the one that got it last is taken,
@@ -31,8 +33,8 @@ constexpr std::int64_t bytes_of_columns_below(std::int64_t n) { return n * (n - 
 enum class Ties { latest, first };
 Numbers minimum_degree(Lists neighbours, Ties ties = Ties::latest, std::int64_t most_bytes = no_limit);
 
-// The neighbours of the bonds of `core`, which are those with a number: all that meet at the atoms atom_i, atom_j, which
-// have the lists `bonds`. By their numbers.
+// The neighbours of the bonds of `core`, which are those with a number: all that meet at the atoms atom_i, atom_j,
+// which have the lists `bonds`. By their numbers.
 Lists neighbours_of(const Lists &bonds, const std::int32_t *atom_i, const std::int32_t *atom_j, const Numbers &core,
                     const Numbers &number);
 

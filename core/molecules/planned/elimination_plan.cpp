@@ -119,8 +119,7 @@ std::mutex late_mutex;  // of what is made late
 void make_list_of_kept(const EliminationPlan &s) {
     const std::lock_guard<std::mutex> lock(late_mutex);
     if (s.way.given != Way::large_tree || list_of_kept(s)) return;
-    Lists bonds =
-        invert(s.n_atoms, s.n_bonds, [&](std::int32_t k, int end) { return (end ? s.atom_j : s.atom_i)[k]; });
+    Lists bonds = invert(s.n_atoms, s.n_bonds, [&](std::int32_t k, int end) { return (end ? s.atom_j : s.atom_i)[k]; });
     if (!has_short_ldl(s, bonds)) return;
     make_ldl_plan(s, std::move(bonds), s.memory->of_large().ldl);
     s.late_ldl = &s.memory->large->ldl.list;

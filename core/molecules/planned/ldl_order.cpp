@@ -93,7 +93,8 @@ ListOrder in_subtrees(const Tree &tree) {
     const std::int32_t n = tree.n(), longest_separator = std::max(n / 256, 64);
     for (const double part : {1 / 16., 1 / 8., 1 / 4., 1 / 2., 2 / 3.}) {
         const std::int32_t most = std::max(shortest_subtree, static_cast<std::int32_t>(part * n));
-        const auto separator = std::count_if(tree.size.begin(), tree.size.end(), [&](std::int32_t k) { return k > most; });
+        const auto separator =
+            std::count_if(tree.size.begin(), tree.size.end(), [&](std::int32_t k) { return k > most; });
         if (n >= shortest && separator <= longest_separator) return cut(tree, order, most);
     }
     return {std::move(order), {}};

@@ -180,8 +180,8 @@ private:
 
     // What the bonds and atoms of tiles were found with, before the longest lists are made.
     void give_back() {
-        for (Numbers *const list : {&bonds_.start, &bonds_.item, &own_.start, &own_.item, &number_, &home_, &last_tile_,
-                                    &column_of_})
+        for (Numbers *const list :
+             {&bonds_.start, &bonds_.item, &own_.start, &own_.item, &number_, &home_, &last_tile_, &column_of_})
             Numbers().swap(*list);
     }
 
