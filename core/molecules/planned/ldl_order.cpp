@@ -16,14 +16,14 @@ std::int32_t entries_of(const Fill &fill, std::int32_t k) {
 
 // The elimination's tree: the parent of a column is its first row; -1: a root. With the size of each column and all
 // below it.
-struct Tree {
+struct EliminationTree {
     Numbers parent, size;
     std::int32_t n() const { return static_cast<std::int32_t>(parent.size()); }
 };
 
-Tree tree_of(const Fill &fill) {
+EliminationTree tree_of(const Fill &fill) {
     const std::int32_t n = static_cast<std::int32_t>(fill.column_start.size()) - 1;
-    Tree tree = {Numbers(at(n)), Numbers(at(n), 1)};
+    EliminationTree tree = {Numbers(at(n)), Numbers(at(n), 1)};
     for (std::int32_t k = 0; k < n; ++k) {
         const std::int32_t parent = entries_of(fill, k) > 0 ? fill.row[at(fill.column_start[at(k)])] : -1;
         if (parent >= 0) tree.size[at(parent)] += tree.size[at(k)];
@@ -34,7 +34,7 @@ Tree tree_of(const Fill &fill) {
 
 // A post-order of the tree. Of what hangs below a column the largest part comes first, so that the rest stands next to
 // it. Each part has as many places as columns, so that these are given from the largest part to the smallest.
-Numbers post_order(const Tree &tree) {
+Numbers post_order(const EliminationTree &tree) {
     const Numbers &size = tree.size, &parent = tree.parent;
     const std::int32_t n = tree.n();
     Numbers start(at(n) + 2), by_size(at(n)), next(at(n)), order(at(n));  // next: the first free place of a part
@@ -58,7 +58,7 @@ Numbers post_order(const Tree &tree) {
 
 // Subtrees of at most `most` columns: of the tree what hangs from larger parts, which are the separator. Parts that
 // follow each other share a subtree. Of a subtree that is no multiple of four the last columns go to the separator.
-ListOrder cut(const Tree &tree, const Numbers &order, std::int32_t most) {
+ListOrder cut(const EliminationTree &tree, const Numbers &order, std::int32_t most) {
     const Numbers &size = tree.size;
     ListOrder cut;
     cut.column.reserve(order.size());
@@ -87,7 +87,7 @@ ListOrder cut(const Tree &tree, const Numbers &order, std::int32_t most) {
 
 // As many subtrees as there can be while the separator is little, by the molecule alone; none of one that is too small
 // for two threads. In a separator one column waits for the next: of a protein it takes tens of ns for each.
-ListOrder in_subtrees(const Tree &tree) {
+ListOrder in_subtrees(const EliminationTree &tree) {
     constexpr std::int32_t shortest = 8192, shortest_subtree = 2048;
     Numbers order = post_order(tree);
     const std::int32_t n = tree.n(), longest_separator = std::max(n / 256, 64);
@@ -147,8 +147,8 @@ private:
 // farthest from the root among the next ones. Within a round by the number of entries. Each subtree by itself.
 class Rounds {
 public:
-    Rounds(const Fill &fill, const Tree &tree, const Numbers &order)
-        : order_(order), column_(order.size() + 1), place_of_(order.size()), ready_(order.size()) {
+    Rounds(const Fill &fill, const EliminationTree &tree, const Numbers &order)
+        : order_(order), column_(order.size() + 1), by_rank_(order.size()), ready_(order.size()) {
         Numbers place(order.size()), depth(order.size()), start;
         for (std::size_t p = 0; p < order.size(); ++p) place[at(order[p])] = static_cast<std::int32_t>(p);
         for (std::size_t p = order.size(); p-- > 0;) {
@@ -164,7 +164,7 @@ public:
         std::int32_t n = 0;  // by depth, the deepest first, and of equally deep ones the first
         for (std::size_t d = start.size(); d-- > 0;) n += std::exchange(start[d], n);
         for (std::size_t p = 0; p < order.size(); ++p)
-            place_of_[at(column_[p].rank = start[at(depth[p])]++)] = static_cast<std::int32_t>(p);
+            by_rank_[at(column_[p].rank = start[at(depth[p])]++)] = static_cast<std::int32_t>(p);
     }
 
     // Of the columns up to `end`, after those before.
@@ -175,7 +175,7 @@ public:
             advance(end);
             const std::size_t n = ready_.take(ranks, most_in_round);
             for (std::size_t i = 0; i < n; ++i) {
-                round[i] = place_of_[ranks[i]];
+                round[i] = by_rank_[ranks[i]];
                 column_[at(round[i])].waits_for = done;
             }
             add_by_entries(round, n, made);
@@ -222,7 +222,7 @@ private:
 
     const Numbers &order_;
     std::vector<Column> column_;  // and one behind the last that is never done
-    Numbers place_of_;            // by rank
+    Numbers by_rank_;             // places
     std::size_t first_ = 0, seen_ = 0;
     LeastFirst ready_;  // ranks
 };
@@ -248,7 +248,7 @@ Numbers bonds_from_the_leaves(const EliminationPlan &s, const Lists &bonds) {
 }
 
 ListOrder order_of_list(const Fill &fill) {
-    const Tree tree = tree_of(fill);
+    const EliminationTree tree = tree_of(fill);
     const ListOrder order = in_subtrees(tree);
     ListOrder made = {{}, order.subtree_end};
     made.column.reserve(order.column.size());
