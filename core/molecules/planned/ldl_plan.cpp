@@ -216,7 +216,7 @@ private:
                                l = row < 0 ? -1 : to_atom[row];
             const bool same = (i == k) | (j == l), shares = same | (i == l) | (j == k);
             a_.row_4[to] = shares ? 4 * row : 0;
-            a_.mass[to++] = shares ? (((i == k) | (i == l) ? i : j) >> 1) + same : none;
+            a_.mass[to++] = shares ? ((((i == k) | (i == l)) ? i : j) >> 1) + same : none;
         };
         for (std::int32_t p = t.first; p < t.end; ++p) {
             std::int32_t e = start_[at(p)];
