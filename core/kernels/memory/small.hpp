@@ -66,19 +66,19 @@ struct InRow : Consecutive<N> {
 template <int N>
 struct ByList : InRow<N>, AtomLists {
     static constexpr bool in_row = false, alike = false;
+    static constexpr bool finds_once = N == 1;
     const bool fetches;  // whether atoms behind these may be fetched, and are worth it
-    static constexpr int known = N == 1 ? 2 : 0;  // atoms
     int64_t element[W][2];
     ByList(const Unit &unit, int64_t first, int64_t used)
         : InRow<N>(unit, first, used), AtomLists(unit.lanes[0].atoms + (N + 1) * first, N + 1),
           fetches(unit.large && unit.count - first >= 2 * W) {
         HOL_UNROLL
-        for (int i = 0; i < W; ++i)
-            for (int k = 0; k < known; ++k) element[i][k] = 3 * atoms[i][k];
+        for (int i = 0; finds_once && i < W; ++i)
+            for (int k = 0; k < 2; ++k) element[i][k] = 3 * atoms[i][k];
     }
     HOL_STATIC int64_t end(const Unit &unit, int64_t) { return unit.count; }
     HOL_FORCED const double *atom(const double *base, int i, long k) const {
-        return known > 0 ? base + element[i][k] : AtomLists::atom(base, i, k);
+        return finds_once ? base + element[i][k] : AtomLists::atom(base, i, k);
     }
     HOL_FORCED Source source(const double *base, const Box &box) const { return {&box, nullptr, base, atoms}; }
     HOL_FORCED void fetch_next(const double *base) const {

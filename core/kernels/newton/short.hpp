@@ -99,8 +99,8 @@ struct TwoBonds {
     }
 };
 
-// The lanes in `wanted`, into tau, by no more than `most` solves; `fewest`: by the fewest, of which there are that many.
-// Those that are neither converged nor untouched need more, or iterate().
+// The lanes in `wanted`, into tau, by no more than `most` solves; `fewest`: by the fewest, of which there are that
+// many. Those that are neither converged nor untouched need more, or iterate().
 template <Same masses, Same a, bool fewest>
 HOL_INLINE NewtonOutcome solve_two_bonds(Newton &x, Carried &carried, mask wanted, int most) {
     const vec3 b0 = x.b[0], b1 = x.b[1], D0 = x.D[0], D1 = x.D[1];

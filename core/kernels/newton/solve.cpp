@@ -35,7 +35,8 @@ static void join(NewtonOutcome &out, const NewtonOutcome &more, mask which) {
 
 // Solves the lanes of two bonds in `longer`, and takes out of it those that are done.
 static NewtonOutcome try_two_bonds(Newton &x, Carried &carried, mask &longer, int most) {
-    const NewtonOutcome out = solve_two_bonds<either, either, false>(x, carried, longer & less(x.lengths, splat(2.5)), most);
+    const NewtonOutcome out =
+        solve_two_bonds<either, either, false>(x, carried, longer & less(x.lengths, splat(2.5)), most);
     longer = longer & ~(out.converged | out.untouched);
     return out;
 }
