@@ -50,7 +50,7 @@ struct PathPlan {
     int32_t n_kinds;
     const int32_t *atom, *bond;  // [n_atoms], [n_bonds] local ones of the molecule
     const Overlap *overlap;
-    int32_t n_atoms, n_bonds, n_junctions;
+    int32_t n_atoms, n_bonds;
 };
 
 }  // namespace holonomic

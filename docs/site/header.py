@@ -10,7 +10,6 @@ from docutils.statemachine import StringList
 from sphinx.util.docutils import SphinxDirective
 from sphinx.util.nodes import nested_parse_with_titles
 
-_HEADING = re.compile(r"/\* -+ (.*) \*/$")
 _COMMENT = re.compile(r"/\*\*(.*?)\*/\n(.*?)(?=\n\n|\n/\*|\Z)", re.S)
 _NAME = re.compile(r"\b(hol_\w*[a-z])\b(\(\))?")
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import weakref
 from ctypes import byref, c_double, c_void_p
-from typing import NoReturn, Optional, Tuple
+from typing import NoReturn, Tuple
 
 import numpy as np
 

@@ -186,8 +186,7 @@ private:
                    a_.bond.data(),
                    a_.overlap.data(),
                    static_cast<std::int32_t>(a_.atom.size()),
-                   static_cast<std::int32_t>(a_.bond.size()),
-                   first};
+                   static_cast<std::int32_t>(a_.bond.size())};
         return true;
     }
     static std::unique_ptr<const EliminationPlan> plan_of_bonds(const Numbers &form, std::int32_t reach) {

@@ -17,7 +17,7 @@ import time
 
 import numpy as np
 import openmm as mm
-from openmm import app, unit
+from openmm import app
 
 here = os.path.dirname(os.path.abspath(__file__))
 sys.path[:0] = [os.path.join(here, "..", "examples"), os.path.join(here, "..")]
