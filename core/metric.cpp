@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "core/caller/box.hpp"
-#include "core/molecules/given/memory_limit.hpp"
+#include "core/molecules/memory_limit.hpp"
 #include "core/rigid/parts.hpp"
 #include "core/rigid/verbs.hpp"
 #include "core/run/diagnose.hpp"

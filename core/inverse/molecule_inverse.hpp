@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/double_pair.hpp"
-#include "core/inverse/extended_molecule.hpp"
+#include "core/extended/molecule.hpp"
 #include "core/inverse/inverse.hpp"
 
 namespace holonomic {

@@ -16,8 +16,8 @@
 #include "core/molecules/given/labels.hpp"
 #include "core/molecules/given/masses.hpp"
 #include "core/molecules/given/molecule.hpp"
-#include "core/molecules/given/shape.hpp"
 #include "core/molecules/planned/plan.hpp"
+#include "core/molecules/planned/shapes.hpp"
 #include "core/molecules/settings.hpp"
 
 namespace holonomic {

@@ -5,9 +5,9 @@
 #include <limits>
 
 #include "core/index.hpp"
+#include "core/molecules/batch.hpp"
 #include "core/molecules/chains.hpp"
-#include "core/molecules/given/batch.hpp"
-#include "core/molecules/given/memory_limit.hpp"
+#include "core/molecules/memory_limit.hpp"
 #include "core/rigid/bodies.hpp"
 #include "core/rigid/cliques.hpp"
 #include "core/rigid/fit.hpp"

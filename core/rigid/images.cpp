@@ -6,10 +6,10 @@
 #include <unordered_map>
 
 #include "core/index.hpp"
+#include "core/molecules/batch.hpp"
 #include "core/molecules/chains.hpp"
-#include "core/molecules/given/batch.hpp"
 #include "core/molecules/given/find.hpp"
-#include "core/molecules/given/memory_limit.hpp"
+#include "core/molecules/memory_limit.hpp"
 #include "core/rigid/bodies.hpp"
 
 namespace holonomic {

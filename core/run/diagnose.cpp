@@ -5,7 +5,7 @@
 
 #include "core/caller/box.hpp"
 #include "core/caller/packed_array.hpp"
-#include "core/inverse/extended_molecule.hpp"
+#include "core/extended/molecule.hpp"
 #include "core/run/bond_words.hpp"
 #include "core/run/outcomes.hpp"
 

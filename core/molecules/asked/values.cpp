@@ -3,8 +3,8 @@
 #include <utility>
 
 #include "core/index.hpp"
+#include "core/molecules/batch.hpp"
 #include "core/molecules/chains.hpp"
-#include "core/molecules/given/batch.hpp"
 #include "core/molecules/given/closable.hpp"
 #include "core/rigid/bodies.hpp"
 

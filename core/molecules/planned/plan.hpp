@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/kernels/call.hpp"
-#include "core/molecules/given/shape.hpp"
+#include "core/molecules/planned/shapes.hpp"
 #include "core/molecules/planned/tree_batches.hpp"
 
 namespace holonomic {

@@ -6,10 +6,11 @@
 #include <cmath>
 #include <cstdint>
 
-#include "core/inverse/extended_molecule.hpp"
+#include "core/extended/molecule.hpp"
 #include "core/kernels/extended/plan_of.hpp"
 #include "core/kernels/extended/solution.hpp"
-#include "core/molecules/given/memory_limit.hpp"
+#include "core/molecules/memory_limit.hpp"
+#include "core/molecules/planned/elimination_plan.hpp"
 
 namespace holonomic::HOL_ISA::extended {
 

@@ -1,6 +1,6 @@
 #define HOL_ISA plain
 #define HOL_LANES 2
-#include "core/inverse/extended_equations.hpp"
+#include "core/extended/equations.hpp"
 
 namespace holonomic {
 

@@ -1,11 +1,11 @@
-#include "core/molecules/given/batch.hpp"
+#include "core/molecules/batch.hpp"
 
 #include <algorithm>
 #include <cstdio>
 
 #include "core/index.hpp"
 #include "core/molecules/given/closable.hpp"
-#include "core/molecules/given/memory_limit.hpp"
+#include "core/molecules/memory_limit.hpp"
 #include "core/molecules/planned/plan_memory.hpp"
 #include "core/rigid/bodies.hpp"
 #include "core/rigid/cliques.hpp"

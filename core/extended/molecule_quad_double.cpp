@@ -1,7 +1,7 @@
 #define HOL_QUAD_DOUBLE
 #define HOL_ISA plain_quad_double
 #define HOL_LANES 2
-#include "core/inverse/extended_equations.hpp"
+#include "core/extended/equations.hpp"
 
 namespace holonomic {
 

@@ -9,8 +9,8 @@ namespace holonomic {
 
 class Chains;
 
-// What adding a bond takes at the most while it is done and afterwards, but for what the cycles of its molecule fill.
-constexpr std::int64_t bytes_of_chain_bond = 40, bytes_of_listed_bond = 120, bytes_of_shape_bond = 400;
+// What adding a bond takes at the most while it is done and afterwards, but for its shape (planned/shapes.hpp).
+constexpr std::int64_t bytes_of_chain_bond = 40, bytes_of_listed_bond = 120;
 // The same of an atom of a body; what a kind of body takes is counted once it is there.
 constexpr std::int64_t bytes_of_body_atom = 100;
 

@@ -1,10 +1,9 @@
-#include "core/molecules/given/shape.hpp"
+#include "core/molecules/planned/shapes.hpp"
 
 #include <algorithm>
 #include <utility>
 
 #include "core/molecules/given/hash.hpp"
-#include "core/molecules/given/memory_limit.hpp"
 #include "core/molecules/given/triangles.hpp"
 
 namespace holonomic {

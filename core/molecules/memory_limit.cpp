@@ -1,4 +1,4 @@
-#include "core/molecules/given/memory_limit.hpp"
+#include "core/molecules/memory_limit.hpp"
 
 #include <algorithm>
 #include <cstdio>
