@@ -7,7 +7,7 @@
 
 #define HOL_ISA plain
 #define HOL_LANES 2
-#include "core/kernels/extended/wide.hpp"
+#include "core/kernels/extended/image.hpp"
 #undef HOL_ISA
 #undef HOL_LANES
 

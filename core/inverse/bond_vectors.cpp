@@ -6,19 +6,6 @@
 
 namespace holonomic {
 
-namespace {
-
-void minimum_image(const Box &box, DoublePair *d) {
-    double n[3];
-    for (int i = 0; i < 3; ++i)
-        n[i] = std::nearbyint(d[0].hi * box.inverse[i] + d[1].hi * box.inverse[3 + i] + d[2].hi * box.inverse[6 + i]);
-    for (int i = 0; i < 3; ++i)
-        for (int c = 0; c < 3; ++c)
-            if (box.h[3 * i + c] != 0) d[c] = d[c] - as_pair(n[i]) * as_pair(box.h[3 * i + c]);
-}
-
-}  // namespace
-
 std::vector<PairVector> bond_vectors(const Molecule &m, const AtomArray &r, const Box &box) {
     std::vector<PairVector> bonds;
     bonds.reserve(static_cast<std::size_t>(m.n_bonds));
@@ -26,10 +13,10 @@ std::vector<PairVector> bond_vectors(const Molecule &m, const AtomArray &r, cons
         double from[3], to[3];
         read_atom(r, m.atom(m.i(k)), from);
         read_atom(r, m.atom(m.j(k)), to);
-        DoublePair d[3];
-        for (int c = 0; c < 3; ++c) d[c] = plain::two_difference(to[c], from[c]);
-        if (box.lattice != Box::none) minimum_image(box, d);
-        bonds.push_back({d[0], d[1], d[2]});
+        PairVector d = {plain::two_difference(to[0], from[0]), plain::two_difference(to[1], from[1]),
+                        plain::two_difference(to[2], from[2])};
+        if (box.lattice != Box::none) plain::wrap(box, d);
+        bonds.push_back(d);
     }
     return bonds;
 }

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "core/kernels/atom.hpp"
+#include "core/kernels/extended/image.hpp"
 #include "core/kernels/extended/plan.hpp"
-#include "core/kernels/extended/wide.hpp"
 
 namespace holonomic::HOL_ISA::extended {
 
@@ -35,17 +35,6 @@ HOL_INLINE bool is_finite(const Vector3<double> &a) { return is_finite(a.x) && i
 
 HOL_INLINE Wide3 difference(const Vector3<double> &from, const Vector3<double> &to) {
     return {two_difference(to.x, from.x), two_difference(to.y, from.y), two_difference(to.z, from.z)};
-}
-
-// Takes the minimum image of a bond vector, unrounded.
-HOL_NOINLINE void wrap(const Box &box, Wide3 &d) {
-    Wide *const component[3] = {&d.x, &d.y, &d.z};
-    const double *const in = box.inverse;
-    double n[3];
-    for (int i = 0; i < 3; ++i) n[i] = round(d.x.hi * in[i] + d.y.hi * in[3 + i] + d.z.hi * in[6 + i]);
-    for (int i = 0; i < 3; ++i)
-        for (int c = 0; c < 3; ++c)
-            if (box.h[3 * i + c] != 0) *component[c] -= n[i] * wide(box.h[3 * i + c]);
 }
 
 // Returns the largest power of two that is not above a.
