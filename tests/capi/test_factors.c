@@ -1,7 +1,7 @@
 /** Factors that are kept: forces and solutions as with hol_forces and hol_solve, right to the same bound. */
 #include "assembly.h"
 #include "check.h"
-#include "mixture.h"
+#include "mixture_forces.h"
 #include "molecule_solution.h"
 #include "random.h"
 
@@ -22,41 +22,14 @@ static hol_factors *factors_at(const hol_chains *chains, const double *r)
     return factors;
 }
 
-/** Every number of every molecule within the bound of tests/oracle/molecules/README.md. */
 static void assert_solution(const mixture *m, const double *v, const double *f)
 {
-    double *all_lambda = untouched((size_t)m->n_bonds), *all_tension = untouched((size_t)m->n_bonds);
-    double *all_g = untouched(mixture_size(m)), sum[9];
-    long double virial[9] = {0}, allowed = 0;
+    forces_results s = {untouched((size_t)m->n_bonds), untouched((size_t)m->n_bonds), untouched(mixture_size(m)), {0}};
     hol_factors *factors = factors_at(m->chains, m->r);
-    CHECK(hol_factors_forces(factors, v, f, all_lambda, all_tension, all_g, HOL_WRITE, sum));
-    for (int64_t p = 0; p < m->n_parts; ++p) {
-        const molecule *part = m->parts + p;
-        molecule_problem problem = molecule_problem_of(part);
-        const long double unit = oracle_bound(part->n_bonds) * DBL_EPSILON;
-        double *lambda = untouched((size_t)part->n_bonds), *tension = untouched((size_t)part->n_bonds);
-        double *g = untouched(3 * (size_t)part->n_atoms);
-        molecule_solution exact;
-        if (!v) problem.v = NULL;
-        if (!f) problem.f = NULL;
-        assert_int_equal(molecule_forces(&problem, &exact), 0);
-        mixture_take_bonds(m, p, all_lambda, lambda);
-        mixture_take_bonds(m, p, all_tension, tension);
-        mixture_take(m, p, all_g, g);
-        for (int64_t k = 0; k < part->n_bonds; ++k) {
-            CHECK_AT_MOST(fabsl(lambda[k] - exact.lambda[k]), unit * exact.lambda_scale[k]);
-            CHECK_AT_MOST(fabsl(tension[k] - exact.tension[k]), 2.4L * unit * exact.lambda_scale[k] * part->length[k]);
-        }
-        for (int64_t i = 0; i < 3 * part->n_atoms; ++i)
-            if (exact.g_scale[i / 3] > 0) CHECK_AT_MOST(fabsl(g[i] - exact.g[i]), unit * exact.g_scale[i / 3]);
-        for (int i = 0; i < 9; ++i) virial[i] += exact.virial[i];
-        allowed += unit * exact.virial_scale;
-        free(lambda), free(tension), free(g);
-        molecule_solution_free(&exact);
-    }
-    for (int i = 0; i < 9; ++i) CHECK_AT_MOST(fabsl(sum[i] - virial[i]), 2 * allowed);
+    CHECK(hol_factors_forces(factors, v, f, s.lambda, s.tension, s.g, HOL_WRITE, s.virial));
+    assert_mixture_forces(m, v, f, &s);
     hol_factors_destroy(factors);
-    free(all_lambda), free(all_tension), free(all_g);
+    forces_results_free(&s);
 }
 
 static void forces_agree_with_a_dense_solution_for_molecules_of_every_shape(void **state)

@@ -1,56 +1,13 @@
 /** Constraint forces of molecules of any shape: an independent solution, and what physics demands of them. */
 #include "check.h"
-#include "mixture.h"
+#include "mixture_forces.h"
 #include "molecule_solution.h"
 
-typedef struct results {
-    double *lambda, *tension, *g, virial[9];
-} results;
-
-static results compute(const mixture *m, const double *v, const double *f)
-{
-    results s = {untouched((size_t)m->n_bonds), untouched((size_t)m->n_bonds), untouched(mixture_size(m)), {0}};
-    CHECK(hol_forces(m->chains, m->r, v, f, s.lambda, s.tension, s.g, HOL_WRITE, s.virial));
-    return s;
-}
-
-static void release(results *s)
-{
-    free(s->lambda), free(s->tension), free(s->g);
-}
-
-/** Every number of every molecule within the bound of tests/oracle/molecules/README.md. */
 static void assert_solution(const mixture *m, const double *v, const double *f)
 {
-    results s = compute(m, v, f);
-    long double virial[9] = {0}, virial_allowed = 0;
-    for (int64_t p = 0; p < m->n_parts; ++p) {
-        const molecule *part = m->parts + p;
-        molecule_problem problem = molecule_problem_of(part);
-        const long double unit = oracle_bound(part->n_bonds) * DBL_EPSILON;
-        double *lambda = untouched((size_t)part->n_bonds), *tension = untouched((size_t)part->n_bonds);
-        double *g = untouched(3 * (size_t)part->n_atoms);
-        molecule_solution exact;
-        if (!v) problem.v = NULL;
-        if (!f) problem.f = NULL;
-        assert_int_equal(molecule_forces(&problem, &exact), 0);
-        mixture_take_bonds(m, p, s.lambda, lambda);
-        mixture_take_bonds(m, p, s.tension, tension);
-        mixture_take(m, p, s.g, g);
-        for (int64_t k = 0; k < part->n_bonds; ++k) {
-            CHECK_AT_MOST(fabsl(lambda[k] - exact.lambda[k]), unit * exact.lambda_scale[k]);
-            /* T = 2 lambda |d|: two more roundings than lambda */
-            CHECK_AT_MOST(fabsl(tension[k] - exact.tension[k]), 2.4L * unit * exact.lambda_scale[k] * part->length[k]);
-        }
-        for (int64_t i = 0; i < 3 * part->n_atoms; ++i)
-            if (exact.g_scale[i / 3] > 0) CHECK_AT_MOST(fabsl(g[i] - exact.g[i]), unit * exact.g_scale[i / 3]);
-        for (int i = 0; i < 9; ++i) virial[i] += exact.virial[i];
-        virial_allowed += unit * exact.virial_scale;
-        free(lambda), free(tension), free(g);
-        molecule_solution_free(&exact);
-    }
-    for (int i = 0; i < 9; ++i) CHECK_AT_MOST(fabsl(s.virial[i] - virial[i]), 2 * virial_allowed);
-    release(&s);
+    forces_results s = mixture_forces(m, v, f);
+    assert_mixture_forces(m, v, f, &s);
+    forces_results_free(&s);
 }
 
 static void forces_agree_with_a_dense_solution_for_molecules_of_every_shape(void **state)
@@ -91,7 +48,7 @@ static void second_derivatives_of_all_bonds_vanish(void **state)
 {
     (void)state;
     mixture m = mixture_of_all(3, MIXED, 300);
-    results s = compute(&m, m.v, m.f);
+    forces_results s = mixture_forces(&m, m.v, m.f);
     for (int64_t p = 0; p < m.n_parts; ++p) {
         const molecule *part = m.parts + p;
         const molecule_problem problem = molecule_problem_of(part);
@@ -117,7 +74,7 @@ static void second_derivatives_of_all_bonds_vanish(void **state)
         free(g);
         molecule_solution_free(&exact);
     }
-    release(&s);
+    forces_results_free(&s);
     mixture_free(&m);
 }
 
@@ -126,7 +83,7 @@ static void internal_forces_give_no_total_force_and_no_torque(void **state)
 {
     (void)state;
     mixture m = mixture_of_all(2, MIXED, 400);
-    results s = compute(&m, m.v, m.f);
+    forces_results s = mixture_forces(&m, m.v, m.f);
     for (int64_t p = 0; p < m.n_parts; ++p) {
         const molecule *part = m.parts + p;
         double *g = untouched(3 * (size_t)part->n_atoms), *lambda = untouched((size_t)part->n_bonds);
@@ -150,7 +107,7 @@ static void internal_forces_give_no_total_force_and_no_torque(void **state)
         }
         free(g), free(lambda);
     }
-    release(&s);
+    forces_results_free(&s);
     mixture_free(&m);
 }
 
@@ -158,7 +115,7 @@ static void virial_is_the_sum_of_positions_times_forces(void **state)
 {
     (void)state;
     mixture m = mixture_of_all(1, ONE_AFTER_THE_OTHER, 500);
-    results s = compute(&m, m.v, m.f);
+    forces_results s = mixture_forces(&m, m.v, m.f);
     long double sum[9] = {0}, size = 0;
     for (int64_t i = 0; i < m.n_atoms; ++i)
         for (int n = 0; n < 9; ++n) {
@@ -171,7 +128,7 @@ static void virial_is_the_sum_of_positions_times_forces(void **state)
         CHECK_AT_MOST(fabsl(s.virial[n] - sum[n]), 64 * DBL_EPSILON * size);
         assert_true(s.virial[n] == s.virial[3 * (n % 3) + n / 3]);
     }
-    release(&s);
+    forces_results_free(&s);
     mixture_free(&m);
 }
 
@@ -179,13 +136,13 @@ static void forces_are_added_to_what_is_there_and_may_replace_the_applied_ones(v
 {
     (void)state;
     mixture m = mixture_of_all(1, MIXED, 600);
-    results s = compute(&m, m.v, m.f);
+    forces_results s = mixture_forces(&m, m.v, m.f);
     double *sum = copy_of(m.f, mixture_size(&m));
     CHECK(hol_forces(m.chains, m.r, m.v, sum, NULL, NULL, sum, HOL_ADD, NULL));
     for (size_t i = 0; i < mixture_size(&m); ++i)
         if (!isnan(m.f[i]) && !isnan(s.g[i])) assert_true(sum[i] == m.f[i] + s.g[i]);
     free(sum);
-    release(&s);
+    forces_results_free(&s);
     mixture_free(&m);
 }
 
@@ -193,10 +150,10 @@ static void at_rest_and_without_forces_all_multipliers_are_zero(void **state)
 {
     (void)state;
     mixture m = mixture_of_all(1, MIXED, 700);
-    results s = compute(&m, NULL, NULL);
+    forces_results s = mixture_forces(&m, NULL, NULL);
     for (int64_t k = 0; k < m.n_bonds; ++k) assert_true(s.lambda[k] == 0 && s.tension[k] == 0);
     for (int i = 0; i < 9; ++i) assert_true(s.virial[i] == 0);
-    release(&s);
+    forces_results_free(&s);
     mixture_free(&m);
 }
 

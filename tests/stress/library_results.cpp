@@ -5,6 +5,8 @@
 #include <cstring>
 #include <utility>
 
+#include "backwards.hpp"
+
 namespace stress
 {
 
@@ -36,32 +38,6 @@ vec gather(const vec &from, const std::vector<std::int64_t> &atoms)
         for (std::size_t x = 0; x < 3; ++x) to[3 * i + x] = from[3 * at(atoms[i]) + x];
     return to;
 }
-
-/** An array per atom as three arrays that begin with the last atom. */
-struct three_arrays {
-    vec memory;
-    hol_view view;
-    hol_const_view read;
-    const hol_const_view *input()
-    {
-        read = hol_view_read(&view);
-        return &read;
-    }
-    explicit three_arrays(const vec &from) : memory(from.size())
-    {
-        const std::size_t n = from.size() / 3;
-        for (std::size_t i = 0; i < n; ++i)
-            for (std::size_t x = 0; x < 3; ++x) memory[x * n + n - 1 - i] = from[3 * i + x];
-        double *last = memory.data() + n - 1;
-        view = {last, last + n, last + 2 * n, -static_cast<std::int64_t>(sizeof(double)), HOL_DOUBLE, 0};
-    }
-    void give_back(vec &to) const
-    {
-        const std::size_t n = to.size() / 3;
-        for (std::size_t i = 0; i < n; ++i)
-            for (std::size_t x = 0; x < 3; ++x) to[3 * i + x] = memory[x * n + n - 1 - i];
-    }
-};
 
 library_results blank(const arrangement &a)
 {
@@ -157,7 +133,7 @@ library_results compute_in_views(const arrangement &a, double dt)
 {
     library_results o = blank(a);
     const hol_chains *chains = a.chains.get();
-    three_arrays r(a.r), v(a.v), f(a.f), g(o.g), fixman(o.fixman), projected(o.v), moved(o.moved), drift(o.r);
+    backwards r(a.r), v(a.v), f(a.f), g(o.g), fixman(o.fixman), projected(o.v), moved(o.moved), drift(o.r);
     o.forces = hol_forces_view(chains, r.input(), v.input(), f.input(), o.lambda.data(), nullptr, &g.view, HOL_WRITE,
                                o.virial.data());
     o.metric = hol_metric_view(chains, r.input(), 1, o.log_det.data(), nullptr, nullptr, &fixman.view, HOL_WRITE);

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <utility>
 
+#include "backwards.hpp"
 #include "molecule_reference.hpp"
 #include "random.h"
 
@@ -42,32 +43,6 @@ std::vector<std::size_t> owners(const std::vector<const hostile_molecule *> &par
 
 struct listed_bond {
     std::size_t molecule, bond;
-};
-
-/** An array per atom as three arrays that begin with the last atom. */
-struct backwards {
-    numbers memory;
-    hol_view view;
-    hol_const_view read;
-    const hol_const_view *input()
-    {
-        read = hol_view_read(&view);
-        return &read;
-    }
-    explicit backwards(const numbers &from) : memory(from.size())
-    {
-        const std::size_t n = from.size() / 3;
-        for (std::size_t i = 0; i < n; ++i)
-            for (std::size_t x = 0; x < 3; ++x) memory[x * n + n - 1 - i] = from[3 * i + x];
-        double *last = memory.data() + n - 1;
-        view = {last, last + n, last + 2 * n, -static_cast<std::int64_t>(sizeof(double)), HOL_DOUBLE, 0};
-    }
-    void give_back(numbers &to) const
-    {
-        const std::size_t n = to.size() / 3;
-        for (std::size_t i = 0; i < n; ++i)
-            for (std::size_t x = 0; x < 3; ++x) to[3 * i + x] = memory[x * n + n - 1 - i];
-    }
 };
 
 molecule_results blank_results(const placement &a)
