@@ -37,7 +37,7 @@ AtomArray Factors::positions() const { return packed_array(r_.data()); }
 // ask at once.
 double *Factors::room(void *owner, std::int64_t molecule, std::int64_t doubles) {
     Factors &f = *static_cast<Factors *>(owner);
-    Block &block = f.blocks_[at(molecule)];
+    KeptBlock &block = f.blocks_[at(molecule)];
     if (block.doubles < doubles) {
         constexpr std::int64_t per_line = alignment / static_cast<std::int64_t>(sizeof(double));
         const std::int64_t whole = (doubles + per_line - 1) / per_line * per_line;
@@ -70,7 +70,7 @@ void Factors::begin() {
         for (double *const memory : chunks_) ::operator delete[](memory, std::align_val_t{alignment});
         chunks_.clear();
         free_ = 0;
-        blocks_.assign(n, Block{});
+        blocks_.assign(n, KeptBlock{});
         rest_.reset();
         rest_of_forces_.reset();
     }

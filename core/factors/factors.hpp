@@ -59,12 +59,12 @@ private:
     double L_[9] = {};
     std::vector<double> r_;  // [n_atoms][3]
 
-    struct Block {
+    struct KeptBlock {
         double *at = nullptr;
         std::int64_t doubles = 0;
     };
     std::mutex mutex_;
-    std::vector<Block> blocks_;          // [n_molecules] by the first molecule of each
+    std::vector<KeptBlock> blocks_;      // [n_molecules] by the first molecule of each
     std::vector<const double *> block_;  // the same for the kernels
     std::vector<double *> chunks_;       // memory of the blocks
     std::int64_t free_ = 0;              // doubles of the last one, in front of its end

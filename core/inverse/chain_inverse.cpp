@@ -35,7 +35,7 @@ ChainInverse::ChainInverse(const Chains &chains, std::int64_t chain, const AtomA
     // way.
     DoublePair e = as_pair(0), pivot = as_pair(1);
     for (std::size_t k = 0; k < n_; ++k) {
-        Bond &b = bonds_[k];
+        EliminatedBond &b = bonds_[k];
         b.root = std::sqrt(w_[k] + w_[k + 1]);
         const DoublePair l = k == 0 ? as_pair(0) : as_pair(coupling(k)) / pivot;
         e = as_pair(deficit(k)) + l * e;

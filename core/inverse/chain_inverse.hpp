@@ -22,7 +22,7 @@ public:
     std::vector<double> error_bound(const AtomArray &v, const AtomArray &f, const double *lambda) const override;
 
 private:
-    struct Bond {
+    struct EliminatedBond {
         double l;  // of the elimination: couples it to the bond before, with the sign of their cosine; 0 for the first
         double l_rest;     // what |l| is more than its double
         DoublePair pivot;  // P of theory (26)
@@ -42,7 +42,7 @@ private:
     std::vector<std::int64_t> atoms_;  // [n+1]
     std::vector<double> w_;            // [n+1]
     std::vector<PairVector> d_;        // [n], exact differences of the coordinates
-    std::vector<Bond> bonds_;
+    std::vector<EliminatedBond> bonds_;
     double largest_row_;  // sum of absolute values in the largest row of Z~
 };
 

@@ -24,14 +24,14 @@ public:
     std::vector<double> error_bound(const AtomArray &v, const AtomArray &f, const double *lambda) const override;
 
 private:
-    struct Residual {
+    struct BondResidual {
         double value, terms;  // and the size of what is added up
         bool exact;           // everything that stands in the equation is zero
     };
     std::vector<double> find_row(bool physical, std::int64_t i) const;
     std::vector<PairVector> pulls(const double *lambda, std::vector<double> &size) const;
-    Residual residual(const AtomArray &v, const AtomArray &f, const std::vector<PairVector> &pull,
-                      const std::vector<double> &size, std::size_t k) const;
+    BondResidual residual(const AtomArray &v, const AtomArray &f, const std::vector<PairVector> &pull,
+                          const std::vector<double> &size, std::size_t k) const;
 
     std::int64_t number_;
     std::vector<std::int64_t> atoms_;  // [n_atoms]

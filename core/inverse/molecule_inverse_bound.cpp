@@ -30,15 +30,15 @@ std::vector<PairVector> MoleculeInverse::pulls(const double *lambda, std::vector
 }
 
 // Of bond k, in the form d_k.(w_j A_j - w_i A_i) + |dv|^2 with A_i = F_i + G_i.
-MoleculeInverse::Residual MoleculeInverse::residual(const AtomArray &v, const AtomArray &f,
-                                                    const std::vector<PairVector> &pull,
-                                                    const std::vector<double> &size, std::size_t k) const {
+MoleculeInverse::BondResidual MoleculeInverse::residual(const AtomArray &v, const AtomArray &f,
+                                                        const std::vector<PairVector> &pull,
+                                                        const std::vector<double> &size, std::size_t k) const {
     const std::size_t i = i_[k], j = j_[k];
     const PairVector fi = vector_of(f, atoms_[i]), fj = vector_of(f, atoms_[j]);
     const PairVector dv = vector_of(v, atoms_[j]) - vector_of(v, atoms_[i]);
     const DoublePair square = dot(dv, dv);
     const double forces = w_[j] * (size_of(fj) + size[j]) + w_[i] * (size_of(fi) + size[i]);
-    Residual rest;
+    BondResidual rest;
     rest.value = rounded(dot(d_[k], w_[j] * (fj + pull[j]) - w_[i] * (fi + pull[i])) + square);
     rest.terms = size_of(d_[k]) * forces + square.hi;
     rest.exact = forces == 0 && size_of(vector_of(v, atoms_[j])) == 0 && size_of(vector_of(v, atoms_[i])) == 0;
@@ -56,7 +56,7 @@ std::vector<double> MoleculeInverse::error_bound(const AtomArray &v, const AtomA
     const std::vector<PairVector> pull = pulls(lambda, size);
     for (std::size_t k = 0; k < n; ++k) {
         const std::int64_t bond = static_cast<std::int64_t>(k);
-        const Residual of_bond = residual(v, f, pull, size, k);
+        const BondResidual of_bond = residual(v, f, pull, size, k);
         root[k] = std::scalbn(solver_->root(bond), solver_->exponent(bond));
         rest[k] = std::fabs(of_bond.value) + evaluation * of_bond.terms;
         if (!of_bond.exact && rest[k] < 0x1p-900)

@@ -42,9 +42,9 @@ StepBonds::StepBonds(const Molecule &molecule, const AtomArray &r_ref, const Box
     make_rows();
 }
 
-std::vector<StepBonds::Vector> StepBonds::moved(const std::vector<double> &tau, double part) const {
-    std::vector<Vector> shift(at(m_.n_atoms), Vector{0, 0, 0}), D(b_.size());
-    const auto add = [](Vector &to, double factor, const Vector &v) {
+std::vector<StepBonds::BondVector> StepBonds::moved(const std::vector<double> &tau, double part) const {
+    std::vector<BondVector> shift(at(m_.n_atoms), BondVector{0, 0, 0}), D(b_.size());
+    const auto add = [](BondVector &to, double factor, const BondVector &v) {
         to.x += factor * v.x;
         to.y += factor * v.y;
         to.z += factor * v.z;
@@ -62,10 +62,10 @@ std::vector<StepBonds::Vector> StepBonds::moved(const std::vector<double> &tau, 
 }
 
 double StepBonds::distance(const std::vector<double> &tau, const std::vector<double> &other) const {
-    const std::vector<Vector> D = moved(tau, 1), E = moved(other, 1);
+    const std::vector<BondVector> D = moved(tau, 1), E = moved(other, 1);
     double largest = 0;
     for (std::int64_t k = 0; k < m_.n_bonds; ++k) {
-        const Vector d = {D[at(k)].x - E[at(k)].x, D[at(k)].y - E[at(k)].y, D[at(k)].z - E[at(k)].z};
+        const BondVector d = {D[at(k)].x - E[at(k)].x, D[at(k)].y - E[at(k)].y, D[at(k)].z - E[at(k)].z};
         const double size = std::sqrt(dot(d, d)) / m_.length(k);
         if (!(size <= largest)) largest = size;  // keeps a NaN
     }
@@ -101,7 +101,7 @@ void StepBonds::make_rows() {
 // By Cholesky's factors of the symmetric part, which exist or not.
 bool StepBonds::is_certified(const std::vector<double> &tau) const {
     if (!has_rows()) return false;
-    const std::vector<Vector> D = moved(tau, 1);
+    const std::vector<BondVector> D = moved(tau, 1);
     std::vector<double> s(coupling_);
     for (std::int64_t k = 0; k < m_.n_bonds; ++k)
         for (std::int64_t l = first_[at(k)]; l <= k; ++l) {
@@ -117,7 +117,7 @@ bool StepBonds::is_certified(const std::vector<double> &tau) const {
 }
 
 // Solves A x = y, A_kl = w_kl D_k.b_l, by the factors L U of A without pivoting; up: columns of U.
-void StepBonds::solve(const std::vector<Vector> &D, std::vector<double> &x, Factors &f) const {
+void StepBonds::solve(const std::vector<BondVector> &D, std::vector<double> &x, EnvelopeFactors &f) const {
     std::vector<double> &low = f.low, &up = f.up;
     low = up = coupling_;
     for (std::int64_t k = 0; k < m_.n_bonds; ++k) {
@@ -140,11 +140,11 @@ void StepBonds::solve(const std::vector<Vector> &D, std::vector<double> &x, Fact
 }
 
 // Newton's method at a point of the path, as long as it leaves a quarter of the error and less.
-bool StepBonds::correct(double part, std::vector<double> &tau, std::int64_t &solves, Factors &f) const {
+bool StepBonds::correct(double part, std::vector<double> &tau, std::int64_t &solves, EnvelopeFactors &f) const {
     std::vector<double> x(b_.size());
     double before = near_enough;
     for (int i = 0; i <= iterations_at_a_point; ++i) {
-        const std::vector<Vector> D = moved(tau, part);
+        const std::vector<BondVector> D = moved(tau, part);
         double error = 0;
         for (std::int64_t k = 0; k < m_.n_bonds; ++k) {
             const double q = dot(b_[at(k)], b_[at(k)]), a = m_.length(k),
@@ -166,7 +166,7 @@ bool StepBonds::correct(double part, std::vector<double> &tau, std::int64_t &sol
 bool StepBonds::follow(std::int64_t most, std::vector<double> &tau, std::int64_t &solves) const {
     if (!has_rows()) return false;
     std::vector<double> accepted(b_.size(), 0.0), slope(b_.size(), 0.0), guess(b_.size());
-    Factors factors;
+    EnvelopeFactors factors;
     double done = 0, step = first_step;
     bool halved = false;
     for (std::int64_t n = 0; done < 1; ++n) {
@@ -191,14 +191,14 @@ bool StepBonds::follow(std::int64_t most, std::vector<double> &tau, std::int64_t
 
 bool StepBonds::shake(std::int64_t rounds, std::vector<double> &tau) const {
     std::fill(tau.begin(), tau.end(), 0.0);
-    std::vector<Vector> shift(at(m_.n_atoms), Vector{0, 0, 0});
+    std::vector<BondVector> shift(at(m_.n_atoms), BondVector{0, 0, 0});
     for (std::int64_t round = 0; round < rounds; ++round) {
         double worst = 0;
         for (std::int64_t k = 0; k < m_.n_bonds; ++k) {
             const double w_i = m_.w(m_.i(k)), w_j = m_.w(m_.j(k)), a = m_.length(k);
-            const Vector &b = b_[at(k)];
-            Vector &i = shift[at(m_.i(k))], &j = shift[at(m_.j(k))];
-            const Vector D = {D_[at(k)].x + j.x - i.x, D_[at(k)].y + j.y - i.y, D_[at(k)].z + j.z - i.z};
+            const BondVector &b = b_[at(k)];
+            BondVector &i = shift[at(m_.i(k))], &j = shift[at(m_.j(k))];
+            const BondVector D = {D_[at(k)].x + j.x - i.x, D_[at(k)].y + j.y - i.y, D_[at(k)].z + j.z - i.z};
             const double left = dot(D, D) - a * a, error = std::fabs(left) / (a * a);
             if (!(error <= worst)) worst = error;
             const double t = left / (2 * (w_i + w_j) * dot(D, b));

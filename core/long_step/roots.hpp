@@ -33,25 +33,25 @@ public:
     bool shake(std::int64_t rounds, std::vector<double> &tau) const;
 
 private:
-    struct Vector {
+    struct BondVector {
         double x, y, z;
     };
-    static double dot(const Vector &a, const Vector &b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-    struct Factors {
+    static double dot(const BondVector &a, const BondVector &b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+    struct EnvelopeFactors {
         std::vector<double> low, up;
     };
-    std::vector<Vector> moved(const std::vector<double> &tau, double part) const;  // bonds at this part of the path
+    std::vector<BondVector> moved(const std::vector<double> &tau, double part) const;  // bonds at this part of the path
     void make_rows();
     bool has_rows() const { return !coupling_.empty(); }
     std::size_t entry(std::int64_t k, std::int64_t l) const {
         const std::size_t row = static_cast<std::size_t>(k);
         return static_cast<std::size_t>(start_[row] + l - first_[row]);
     }
-    void solve(const std::vector<Vector> &D, std::vector<double> &x, Factors &f) const;
-    bool correct(double part, std::vector<double> &tau, std::int64_t &solves, Factors &f) const;
+    void solve(const std::vector<BondVector> &D, std::vector<double> &x, EnvelopeFactors &f) const;
+    bool correct(double part, std::vector<double> &tau, std::int64_t &solves, EnvelopeFactors &f) const;
 
     const Molecule &m_;
-    std::vector<Vector> b_, D_;
+    std::vector<BondVector> b_, D_;
     double error_ = 0;
     // Bonds of which row k may have elements: first_[k] .. k, from start_[k] on; W of these. Empty: too many.
     std::vector<std::int64_t> first_, start_;

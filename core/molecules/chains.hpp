@@ -231,13 +231,13 @@ private:
     Groups groups_;
     std::vector<std::int64_t> unconstrained_;  // bonds in no equation, in the caller's arrays: between two fixed atoms,
     std::vector<std::int64_t> implied_;        // or those that others imply (rigid/implied.hpp), which ascend
-    struct Given {
+    struct LeftOut {
         std::int64_t atoms[2];
         double length;
     };
-    std::vector<Given> of_unconstrained_;   // as they were given
-    std::vector<unsigned char> backwards_;  // [n_bonds], or empty: no bond is
-    std::vector<unsigned char> active_;     // [n_chains] or empty: all
+    std::vector<LeftOut> of_unconstrained_;  // as they were given
+    std::vector<unsigned char> backwards_;   // [n_bonds], or empty: no bond is
+    std::vector<unsigned char> active_;      // [n_chains] or empty: all
     Owned<rigid::Bodies> bodies_;
     Adjustment adjustment_;
     std::vector<std::int32_t> images_;  // [..][3] of the first bonds; looked at for those that have been told alone

@@ -26,14 +26,14 @@ struct NetworkPlan;  // core/plan/network.hpp
 // A core is what is left when atoms with one bond are stripped until there are none; a tree has none. All its atoms are
 // movable, because fixed atoms are leaves; only a network keeps these, too.
 struct EliminationPlan {
-    enum Type : int32_t {
+    enum CoreType : int32_t {
         tree,
         triangle,
         ring,   // one ring, and the trees that hang from it; with trees only up to largest_graph_in_lanes and
                 // most_on_ring
         graph,  // any other core
     };
-    Type type;
+    CoreType type;
     Ways way;    // how it is solved; what follows is there where its ways need it
     bool alone;  // not beside others of its kind in lanes
     int32_t n_atoms, n_bonds;

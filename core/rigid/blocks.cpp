@@ -8,7 +8,7 @@
 
 namespace holonomic::rigid {
 
-static_assert(std::is_standard_layout_v<Step> && sizeof(Step) == 2 * sizeof(std::int32_t),
+static_assert(std::is_standard_layout_v<NearestStep> && sizeof(NearestStep) == 2 * sizeof(std::int32_t),
               "BodyKind has them in pairs");
 
 BodyKind kind_of(const Body &body, const MoleculeKind &molecule) {

@@ -66,7 +66,7 @@ std::vector<double> signature_of(const Given &given) {
     }
     count(given.hidden.size());
     for (const Bond &bond : given.hidden) words.insert(words.end(), {double(bond.i), double(bond.j), bond.length});
-    for (const Step &link : given.links) words.insert(words.end(), {double(link.atom), double(link.before)});
+    for (const NearestStep &link : given.links) words.insert(words.end(), {double(link.atom), double(link.before)});
     return words;
 }
 
@@ -252,7 +252,7 @@ std::int64_t Bodies::constraints(std::int64_t molecule, int dimensions) const {
 
 std::int64_t Bodies::bytes() const {
     std::int64_t sum =
-        static_cast<std::int64_t>(sizeof *this + molecules_.capacity() * sizeof(Molecule) + active_.capacity() +
+        static_cast<std::int64_t>(sizeof *this + molecules_.capacity() * sizeof(MoleculeOfKind) + active_.capacity() +
                                   (atoms_.capacity() + bonds_.capacity() + fixed_.capacity()) * sizeof(std::int64_t)) +
         static_cast<std::int64_t>(32 * sites_.size());
     for (const MoleculeKind &its : kinds_) sum += its.bytes();

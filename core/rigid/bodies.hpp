@@ -31,7 +31,7 @@ struct Given {
     bool by_lengths = false;                 // bonds within bodies are what holds these, and have multipliers
     std::vector<AffinePart> affine;          // of the bodies, or empty: all are rigid
     std::vector<Bond> hidden;                // distances that are held and are no bonds of the caller's
-    std::vector<Step> links;                 // pairs of atoms between which nearest images are taken where no bond is
+    std::vector<NearestStep> links;          // pairs of atoms between which nearest images are taken where no bond is
 };
 
 // What makes given bodies impossible: a body's fault or that of their bonds.
@@ -93,7 +93,7 @@ public:
     Given given(std::int64_t molecule) const;
 
 private:
-    struct Molecule {
+    struct MoleculeOfKind {
         std::int32_t kind;
         bool consecutive;  // its atoms stand one behind the other
         std::int64_t first_atom, first_bond;
@@ -104,7 +104,7 @@ private:
     std::vector<Body> body_kinds_;
     std::unordered_multimap<std::uint64_t, std::int32_t> body_of_hash_, kind_of_hash_;
     std::vector<MoleculeKind> kinds_;
-    std::vector<Molecule> molecules_;
+    std::vector<MoleculeOfKind> molecules_;
     std::vector<std::int64_t> atoms_, bonds_, fixed_;
     std::unordered_set<std::int64_t> sites_;
     std::vector<unsigned char> active_;

@@ -268,9 +268,9 @@ const char *fault_in_words(BodyFault::Cause cause) {
 }
 
 // Prim's tree of least distances.
-std::vector<Step> nearest_steps(const Body &body, std::int32_t first) {
+std::vector<NearestStep> nearest_steps(const Body &body, std::int32_t first) {
     const std::int32_t n = body.n_atoms;
-    std::vector<Step> steps;
+    std::vector<NearestStep> steps;
     std::vector<double> least(at(n), std::numeric_limits<double>::infinity());
     std::vector<std::int32_t> before(at(n), -1);
     std::vector<bool> done(at(n), false);

@@ -70,9 +70,9 @@ const char *fault_in_words(BodyFault::Cause cause);
 
 // Which atom of a body is nearest to one of those before it, so that images are taken step by step: pairs of an atom
 // and the one before it, beginning at `first`.
-struct Step {
+struct NearestStep {
     std::int32_t atom, before;
 };
-std::vector<Step> nearest_steps(const Body &body, std::int32_t first);
+std::vector<NearestStep> nearest_steps(const Body &body, std::int32_t first);
 
 }  // namespace holonomic::rigid

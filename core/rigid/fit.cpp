@@ -39,7 +39,7 @@ public:
     }
 
 private:
-    struct Pair {
+    struct PairOfAtoms {
         std::int64_t i, j;
         double length, missing, along[3];
     };
@@ -47,7 +47,7 @@ private:
 
     double measure() {
         double sum = 0;
-        for (Pair &pair : pairs_) {
+        for (PairOfAtoms &pair : pairs_) {
             double square = 0;
             for (int c = 0; c < dimension_; ++c) {
                 pair.along[c] = x_[at(3 * pair.i + c)] - x_[at(3 * pair.j + c)];
@@ -62,7 +62,7 @@ private:
     }
     Vector stretch(const Vector &move) const {
         Vector out;
-        for (const Pair &pair : pairs_) {
+        for (const PairOfAtoms &pair : pairs_) {
             double sum = 0;
             for (int c = 0; c < dimension_; ++c)
                 sum += pair.along[c] * (move[at(3 * pair.i + c)] - move[at(3 * pair.j + c)]);
@@ -86,7 +86,7 @@ private:
     }
     void step() {
         Vector residual;
-        for (const Pair &pair : pairs_) residual.push_back(pair.missing);
+        for (const PairOfAtoms &pair : pairs_) residual.push_back(pair.missing);
         Vector gradient = pull(residual), direction = gradient;
         double size = square(gradient);
         const double enough = 1e-28 * size;
@@ -105,7 +105,7 @@ private:
 
     const int dimension_;
     std::vector<double> &x_, best_;
-    std::vector<Pair> pairs_;
+    std::vector<PairOfAtoms> pairs_;
 };
 
 // Of the square of a height, relative to the largest, which independence is a matter of for few atoms.

@@ -72,7 +72,11 @@ private:
 // What all distances of n atoms say: of three on a line, of four in a plane, of five and more anywhere. Three that make
 // no triangle are refused elsewhere (closable.hpp).
 struct FittedGroup {
-    enum Kind { independent, dependent, impossible } kind;  // impossible: of no place in space, by more than tolerance
+    enum Dependence {
+        independent,
+        dependent,
+        impossible
+    } kind;  // impossible: of no place in space, by more than tolerance
     int dimension;
     Misfit misfit;
     std::vector<double> coordinates;

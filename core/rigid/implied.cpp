@@ -125,15 +125,15 @@ std::vector<std::int64_t> implied_beside(const LinearParts &linear, const Masses
     const auto is_fixed = [&](std::int64_t atom) { return masses.fixed(atom - list.base); };
     // First those that bodies hold, then those between leaders, by which the others are best told, then shorter ones;
     // but last those that say little more than others do.
-    struct Key {
+    struct SortKey {
         int rank;
         double length;
         std::int64_t bond;
-        bool operator<(const Key &other) const {
+        bool operator<(const SortKey &other) const {
             return std::tie(rank, length, bond) < std::tie(other.rank, other.length, other.bond);
         }
     };
-    std::vector<Key> order;
+    std::vector<SortKey> order;
     for (const std::int64_t k : cliques.linear_bonds) {
         const std::int64_t i = list.pairs[2 * k], j = list.pairs[2 * k + 1];
         const bool within = body_of.count(i) && body_of.count(j) && body_of.at(i) == body_of.at(j);
@@ -141,8 +141,8 @@ std::vector<std::int64_t> implied_beside(const LinearParts &linear, const Masses
     }
     std::sort(order.begin(), order.end());
     Spread spread(linear);
-    std::vector<Key> last;
-    const auto says_little = [&](const Key &key) {
+    std::vector<SortKey> last;
+    const auto says_little = [&](const SortKey &key) {
         const bool far = spread.add(list.pairs[2 * key.bond], list.pairs[2 * key.bond + 1], key.rank < 0);
         if (!far && key.rank >= 0) last.push_back(key);
         return !far && key.rank >= 0;
@@ -150,7 +150,7 @@ std::vector<std::int64_t> implied_beside(const LinearParts &linear, const Masses
     order.erase(std::remove_if(order.begin(), order.end(), says_little), order.end());  // from first to last
     order.insert(order.end(), last.begin(), last.end());
     std::vector<std::int64_t> found;
-    for (const Key &key : order)
+    for (const SortKey &key : order)
         if (rank.add(list.pairs[2 * key.bond], list.pairs[2 * key.bond + 1], is_fixed) && key.rank >= 0)
             found.push_back(key.bond);
     for (const std::int64_t k : found)

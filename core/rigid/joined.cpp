@@ -133,7 +133,7 @@ private:
             Body body;
             body.n_atoms = static_cast<std::int32_t>(group.atoms.size());
             body.coordinates = group.coordinates;
-            for (const Step &step : nearest_steps(body, 0))
+            for (const NearestStep &step : nearest_steps(body, 0))
                 out_.parts.links.emplace_back(group.atoms[at(step.atom)], group.atoms[at(step.before)]);
         }
         std::sort(all.begin(), all.end(), [](const auto &a, const auto &b) {

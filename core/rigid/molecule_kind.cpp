@@ -157,7 +157,7 @@ private:
             const Part &part = s_.parts[at(s_.part_of[at(atom)])];
             const Body &body = body_of(part);
             if (!body.is_rigid) return;
-            for (const Step &step : nearest_steps(body, atom - part.first_atom)) {
+            for (const NearestStep &step : nearest_steps(body, atom - part.first_atom)) {
                 s_.steps.push_back({part.first_atom + step.atom, part.first_atom + step.before});
                 seen[at(part.first_atom + step.atom)] = true;
                 found.push_back(part.first_atom + step.atom);
@@ -181,7 +181,7 @@ private:
         };
         follow_bonds();
         for (std::size_t k = 0; k < s_.links.size(); ++k) {
-            const Step &link = s_.links[k];
+            const NearestStep &link = s_.links[k];
             if (seen[at(link.atom)] == seen[at(link.before)]) continue;
             if (seen[at(link.atom)])
                 reach(link.before, link.atom);
@@ -314,7 +314,8 @@ void complete(MoleculeKind &kind, const std::vector<Body> &bodies) {
 std::int64_t MoleculeKind::bytes() const {
     return static_cast<std::int64_t>(
         signature.capacity() * sizeof(double) + entries.capacity() * sizeof(Entry) +
-        products.capacity() * sizeof(Product) + bonds.capacity() * sizeof(Bond) + steps.capacity() * sizeof(Step) +
+        products.capacity() * sizeof(Product) + bonds.capacity() * sizeof(Bond) +
+        steps.capacity() * sizeof(NearestStep) +
         (row.capacity() + column_start.capacity() + part_of.capacity() + node_of.capacity()) * sizeof(std::int32_t) +
         (w.capacity() + mass.capacity() + scale.capacity() + reach.capacity()) * sizeof(double) +
         target.capacity() * sizeof(DoublePair) + sizeof *this);

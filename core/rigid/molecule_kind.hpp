@@ -59,14 +59,14 @@ struct MoleculeKind {
     std::vector<double> w;              // [n_nodes]
     std::vector<double> mass;           // [n_atoms], 0: a site; of fixed atoms 0 too
     std::vector<Bond> bonds;
-    std::vector<Bond> hidden;   // distances that are held, but are no bonds of the caller's
-    std::vector<Step> links;    // between which nearest images are taken where no bond is
-    std::vector<Step> steps;    // the way through the molecule, from its first atom
-    bool by_lengths = false;    // bonds within bodies have multipliers (within.hpp)
-    bool has_images = false;    // of bonds, which are told and not looked for
-    bool is_lone_body = false;  // one that plain doubles do for, without bonds but within it
-    bool is_ordinary = false;   // no product of its masses and lengths overflows or underflows; else it is refused
-    double longest = 0;         // of what is taken as a nearest image
+    std::vector<Bond> hidden;        // distances that are held, but are no bonds of the caller's
+    std::vector<NearestStep> links;  // between which nearest images are taken where no bond is
+    std::vector<NearestStep> steps;  // the way through the molecule, from its first atom
+    bool by_lengths = false;         // bonds within bodies have multipliers (within.hpp)
+    bool has_images = false;         // of bonds, which are told and not looked for
+    bool is_lone_body = false;       // one that plain doubles do for, without bonds but within it
+    bool is_ordinary = false;        // no product of its masses and lengths overflows or underflows; else it is refused
+    double longest = 0;              // of what is taken as a nearest image
     // rows in the order of elimination
     std::vector<std::int32_t> entry_start;  // [n_rows + 1]
     std::vector<Entry> entries;

@@ -102,7 +102,7 @@ void System::read(const AtomArray &r, const Cell &box, const MoleculeView &view,
     for (std::int32_t i = 0; i < s_.n_atoms; ++i) read_atom(r, view.atoms[i], raw + 3 * i);
     // A first atom that is not finite makes all of them so.
     to.x[0] = difference(raw, raw);
-    for (const Step &step : s_.steps) {
+    for (const NearestStep &step : s_.steps) {
         const PairVector d = difference(raw + 3 * step.atom, raw + 3 * step.before);
         to.x[step.atom] = to.x[step.before] + (s_.has_images ? d : image(box, d));
     }

@@ -34,7 +34,7 @@ Tally *tallies(Keep what, std::int64_t n) {
 // done: one that has to wait for a processor keeps nobody waiting but for what it has begun. A thread that gets no
 // memory leaves its share to the others; the calling thread has its memory already.
 template <class Body>
-void share(int n_threads, std::int64_t scratch_bytes, std::int64_t store_bytes, std::int64_t n, Team::Order order,
+void share(int n_threads, std::int64_t scratch_bytes, std::int64_t store_bytes, std::int64_t n, Team::Direction order,
            const Body &body) {
     struct alignas(64) Share {
         std::atomic<std::int64_t> next;
@@ -125,7 +125,7 @@ template <class AnyUnit, class Which>
 void work_on_rescaled(const Work &work, const AnyUnit &unit, int where, double *scratch, Tally &tally,
                       const Which &which) {
     for (std::int64_t i = 0; i < unit.count; ++i) {
-        typename std::remove_const<typename std::remove_pointer<decltype(unit.lanes)>::type>::type lane;
+        LaneOf<AnyUnit> lane;
         const AnyUnit one = one_of(unit, i, &lane);
         if (which(number_of(lane)) && !work.again(one, where, scratch, tally)) note_bad(number_of(lane), tally);
     }
@@ -311,8 +311,8 @@ private:
 
 }  // namespace
 
-void Team::run(std::int64_t n, Order order, Tally &total, void (*call)(const void *, std::int64_t, double *, Tally &),
-               const void *body) const {
+void Team::run(std::int64_t n, Direction order, Tally &total,
+               void (*call)(const void *, std::int64_t, double *, Tally &), const void *body) const {
     const auto at = [&](std::int64_t i) { return order == forwards ? i : n - 1 - i; };
     if (n_threads_ > 1) {
         Tally *const parts = tallies(Keep::block_tallies, n);

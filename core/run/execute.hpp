@@ -16,12 +16,12 @@ class Team {
 public:
     Team(int n_threads, std::int64_t scratch_bytes) : n_threads_(n_threads), scratch_bytes_(scratch_bytes) {}
 
-    enum Order { forwards, backwards };
+    enum Direction { forwards, backwards };
 
     // Calls body(j, scratch, tally) for j = 0 .. n-1, or from n-1 to 0, and adds the tallies in that order. A thread
     // has the same share in both, so that it finds in cache what it came to last, but for the first blocks of a chain.
     template <class Body>
-    void for_each(std::int64_t n, Tally &total, const Body &body, Order order = forwards) const {
+    void for_each(std::int64_t n, Tally &total, const Body &body, Direction order = forwards) const {
         run(
             n, order, total,
             [](const void *b, std::int64_t j, double *scratch, Tally &tally) {
@@ -39,7 +39,7 @@ public:
     }
 
 private:
-    void run(std::int64_t n, Order order, Tally &total, void (*call)(const void *, std::int64_t, double *, Tally &),
+    void run(std::int64_t n, Direction order, Tally &total, void (*call)(const void *, std::int64_t, double *, Tally &),
              const void *body) const;
     int n_threads_;
     std::int64_t scratch_bytes_;

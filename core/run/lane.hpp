@@ -2,11 +2,16 @@
 #pragma once
 
 #include <cstdint>
+#include <type_traits>
 
 #include "core/kernels/call.hpp"
 #include "core/plan/elimination.hpp"
 
 namespace holonomic {
+
+// What a unit has of each molecule.
+template <class AnyUnit>
+using LaneOf = std::remove_const_t<std::remove_pointer_t<decltype(AnyUnit::lanes)>>;
 
 template <class AnyLane>
 inline AnyLane shifted(AnyLane lane, std::int64_t n_atoms, std::int64_t n_bonds) {

@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <type_traits>
 
 #include "core/kernels/tally.hpp"
 #include "core/molecules/given/ordinary.hpp"
 #include "core/plan/elimination.hpp"
+#include "core/run/lane.hpp"
 
 namespace holonomic {
 
@@ -55,11 +55,11 @@ public:
     double log_det = 0, log_det_z = 0;  // of the metric: sums, which no power of two multiplies
 
 private:
-    struct Atoms {
+    struct CopiedAtoms {
         AtomArray callers, copy, before;  // before: as it was given to the kernel
         int e;
     };
-    struct Values {
+    struct CopiedValues {
         double *callers, *copy, *before;
         int e;
     };
@@ -71,8 +71,8 @@ private:
     char *memory_;
     double *w_ = nullptr, *length_ = nullptr;
     double strain_[6];
-    Atoms atoms_[3];
-    Values values_[2];
+    CopiedAtoms atoms_[3];
+    CopiedValues values_[2];
     int n_atoms_ = 0, n_values_ = 0;
 };
 
@@ -137,7 +137,7 @@ bool work_in_ordinary_units(const Call &call, const AnyUnit &unit, Tally &tally,
     Rescaled copy(one, units);
     Call of_copy = rescaled(call, copy);
     mark(of_copy);
-    typename std::remove_const<typename std::remove_pointer<decltype(unit.lanes)>::type>::type lane;
+    LaneOf<AnyUnit> lane;
     Tally own = empty_tally();
     run(of_copy, unit_of(copy, unit, &lane), own);
     if (own.n_bad > 0 || !copy.put_back()) return false;

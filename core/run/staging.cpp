@@ -63,7 +63,7 @@ void Staging::take_memory(int wide) {
     if (!memory_) throw std::bad_alloc();
 }
 
-Staging::Values &Staging::copy_of(const double *callers, int width) {
+Staging::StagedValues &Staging::copy_of(const double *callers, int width) {
     for (int i = 0; i < n_values_; ++i)
         if (values_[i].callers == callers) return values_[i];
     const std::vector<std::int64_t> &places = chains_.reordered_bonds();
@@ -76,7 +76,7 @@ Staging::Values &Staging::copy_of(const double *callers, int width) {
 
 double *Staging::results(double *callers, int width) {
     if (!callers) return nullptr;
-    Values &values = copy_of(callers, width);
+    StagedValues &values = copy_of(callers, width);
     values.result = callers;
     return values.copy;
 }
@@ -109,7 +109,7 @@ AtomArray Staging::summed_atoms(const AtomArray &callers, bool add) {
 }
 
 // The copies of a shared atom stand next to each other in the plan, in the order of the molecules.
-void Staging::sum_copies(const Atoms &atoms) const {
+void Staging::sum_copies(const StagedAtoms &atoms) const {
     for (std::size_t first = 0, end; first < plan_.copies.size(); first = end) {
         const std::int64_t atom = plan_.copies[first].atom;
         double sum[3] = {0, 0, 0};
@@ -129,7 +129,7 @@ void Staging::sum_copies(const Atoms &atoms) const {
     }
 }
 
-void Staging::put_back(const Atoms &atoms) const {
+void Staging::put_back(const StagedAtoms &atoms) const {
     if (atoms.use == Use::read) return;
     for (std::size_t i = 0; i < plan_.stage.size(); ++i)
         if (!plan_.is_copy[i]) copy_atom(atoms.copy, static_cast<std::int64_t>(i), atoms.callers, plan_.stage[i]);

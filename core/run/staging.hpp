@@ -47,28 +47,28 @@ public:
 private:
     static constexpr int most = 4;
     enum class Use { read, moved, written, added };
-    struct Values {
+    struct StagedValues {
         const double *callers;
         double *copy, *result;  // null: only read
         int width;
     };
-    struct Atoms {
+    struct StagedAtoms {
         AtomArray callers, copy;
         Use use;
     };
     void take_memory(int wide);
     void put_all_back() const;
-    Values &copy_of(const double *callers, int width);
+    StagedValues &copy_of(const double *callers, int width);
     AtomArray stage(const AtomArray &callers, Use use);
-    void put_back(const Atoms &atoms) const;
-    void sum_copies(const Atoms &atoms) const;
+    void put_back(const StagedAtoms &atoms) const;
+    void sum_copies(const StagedAtoms &atoms) const;
 
     const Chains &chains_;
     const Plan &plan_;
     const bool reorders_;
     char *memory_ = nullptr;  // what of it is free
-    Values values_[most + 1];
-    Atoms atoms_[most];
+    StagedValues values_[most + 1];
+    StagedAtoms atoms_[most];
     int n_values_ = 0, n_atoms_ = 0;
 };
 

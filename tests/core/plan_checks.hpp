@@ -199,7 +199,7 @@ inline void branches_need_nothing_of_others(const holonomic::LdlPlan &s, int lea
 }
 
 inline std::unique_ptr<const EliminationPlan> check(const char *name, const Bonds &bonds, int n_atoms,
-                                                    EliminationPlan::Type type)
+                                                    EliminationPlan::CoreType type)
 {
     static std::mt19937 random(1);
     current = name;

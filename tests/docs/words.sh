@@ -30,6 +30,8 @@ pieces?.of.paths?     section
 pieces?.of.(a.)?(large.)?trees?  tile
 [Ss]lots?             index (in the order of elimination)
 place_of              bond_index_of, site_of
+(n_|At)[Pp]laces       row (of a batch of trees)
+places_in_lanes       elements
 (first|end)_place     first_index, end_index
 (clear|add|give)_sides  contributions
 size_of_side          size of the right-hand side

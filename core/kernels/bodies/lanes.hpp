@@ -27,8 +27,8 @@ HOL_NOINLINE void sum_axes(const From from, const BodyKind &kind, Frame<R> &to) 
 // The sums of vectors by weights. Of forces they are taken per moment, the centre's weights are 1, and vectors are
 // kept. Of rates and moves the excess of shares is taken; of rough rates, which no body takes into its next step, but
 // its largest part. of_rough_axes: the centre is not wanted.
-enum Sums { of_forces, of_rates, of_rough_rates, of_rough_axes };
-template <int R, Sums what, class From>
+enum WhichSums { of_forces, of_rates, of_rough_rates, of_rough_axes };
+template <int R, WhichSums what, class From>
 HOL_NOINLINE void sum_all(const From from, const BodyKind &kind, const double *weights, long n, Frame<R> &to,
                           vec3 *kept = nullptr) {
     constexpr int first = what == of_rough_axes;
@@ -128,7 +128,7 @@ struct BodyLanes : BodyBlock {
 
     // Velocities of the atoms that have mass; what sites have is not looked at. Not from the first one's: it may be
     // that of a light atom which is far faster than all others.
-    template <Sums what = of_rates>
+    template <WhichSums what = of_rates>
     HOL_FORCED void rates(const AtomArray &array, Frame<R> &to) {
         sum_all<R, what>(rows_of(array, kind.has_sites_between), kind, kind.share, kind.n_heavy, to);
     }

@@ -103,9 +103,9 @@ HOL_INLINE long unpack(const double *, long, const SeparateArrays &) {
 }
 #endif
 
-enum Copy { copy_in, copy_back, copy_back_and_add };
+enum CopyWay { copy_in, copy_back, copy_back_and_add };
 
-template <Copy way, class T>
+template <CopyWay way, class T>
 HOL_INLINE void copy_elements(const AtomArray &array, const Lane &lane, long from, long n, double *__restrict packed) {
     for_each_element<T>(array, lane, from, n, [=](T &element, long i) HOL_FORCED {
         if (way == copy_in)
@@ -116,7 +116,7 @@ HOL_INLINE void copy_elements(const AtomArray &array, const Lane &lane, long fro
     for (long k = 0; way == copy_in && !array.z && k <= n; ++k) packed[3 * k + 2] = 0;
 }
 
-template <Copy way>
+template <CopyWay way>
 HOL_INLINE void copy_atoms(const AtomArray &array, const Lane &lane, long from, long n, double *packed) {
     const SeparateArrays arrays(array, lane, from);
     long done = 0;

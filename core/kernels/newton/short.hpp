@@ -74,17 +74,17 @@ struct TwoBonds {
         return c;
     }
     // M and 1 / (2 det).
-    struct FactorsOf {
+    struct TwoBondFactors {
         vec m00, m01, m10, m11, r, whole;
         HOL_FORCED vec part() const { return mul_add(m00, m11, -(m01 * m10)); }
     };
-    HOL_STATIC void solve(const FactorsOf &f, const vec *y, vec *tau) {
+    HOL_STATIC void solve(const TwoBondFactors &f, const vec *y, vec *tau) {
         const vec y0 = y[0], y1 = y[1];
         tau[0] = f.r * mul_add(f.m11, y0, -(f.m01 * y1));
         tau[1] = f.r * mul_add(f.m00, y1, -(f.m10 * y0));
     }
-    HOL_FORCED FactorsOf factors(vec h00, vec h01, vec h10, vec h11) const {
-        FactorsOf f;
+    HOL_FORCED TwoBondFactors factors(vec h00, vec h01, vec h10, vec h11) const {
+        TwoBondFactors f;
         f.m00 = s0 * h00;
         f.m11 = s1 * h11;
         f.m01 = -(w * h01);
@@ -93,8 +93,8 @@ struct TwoBonds {
         f.r = splat(0.5) / f.part();
         return f;
     }
-    HOL_FORCED FactorsOf inverse() const { return factors(g00, g01, g10, g11); }
-    HOL_FORCED FactorsOf inverse(const Change &c) const {
+    HOL_FORCED TwoBondFactors inverse() const { return factors(g00, g01, g10, g11); }
+    HOL_FORCED TwoBondFactors inverse(const Change &c) const {
         return factors(g00 + c.p00, g01 + c.p01, g10 + c.p10, g11 + c.p11);
     }
 };
@@ -118,7 +118,7 @@ HOL_INLINE NewtonOutcome solve_two_bonds(Newton &x, Carried &carried, mask wante
     // As in the elimination, the error is NaN if a reference is.
     const vec before = largest_error<a>(x, worst, (m.sigma[0] + m.sigma[1]) + (m.g00 + m.g11));
     out.untouched = wanted & carried.within(before, one);
-    const TwoBonds::FactorsOf f = m.inverse();
+    const TwoBonds::TwoBondFactors f = m.inverse();
     const mask open = less(two_bonds_part * f.whole, f.part());
     mask unsure = wanted & open;
     vec tau[2];

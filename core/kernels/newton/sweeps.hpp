@@ -99,7 +99,7 @@ HOL_INLINE vec eliminate(const Block &block, const Newton &x, mask which) {
     vec worst = {}, y = {}, down = {}, last = {}, q = dot(d, x.b[0]);
     Fraction e = {times_w<masses>(x, 0, q), splat(1.0)};
     const auto bond = [&](long k, bool ragged) HOL_FORCED {
-        Row &row = x.row[k];
+        ChainRow &row = x.row[k];
         const vec F1 = e.next(times_w<masses>(x, k + 1, q)), rF = splat(1.0) / F1, rP = e.F * rF;
         row.half_rP = all ? 0.5 * rP : select(which, 0.5 * rP, row.half_rP);
         row.down = down = all ? down : select(which, down, row.down);
@@ -190,7 +190,7 @@ HOL_INLINE void substitute_back(const Block &block, const Newton &x, bool first,
             add(k, t);
         },
         [&](long k) HOL_FORCED {
-            const Row &a = x.row[k], &b = x.row[k - 1];
+            const ChainRow &a = x.row[k], &b = x.row[k - 1];
             const vec up = a.up, u = a.u, both = b.up * up, sum = mul_add(b.up, u, b.u);
             add(k, mul_add(up, t, u));
             t = mul_add(both, t, sum);

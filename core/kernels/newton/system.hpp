@@ -15,7 +15,7 @@ namespace holonomic::HOL_ISA {
 
 // A bond's row: the factor of the row before on the way up, 1 / (2 P), the factor of the row behind on the way down,
 // and y / (2 P).
-struct Row {
+struct ChainRow {
     vec down, half_rP, up, u;
 };
 
@@ -30,7 +30,7 @@ BondLengths bond_lengths(const Block &, const Lane *, Arena &, bool tables = fal
 
 struct Newton : BondLengths {
     vec3 *b, *D;  // [n+W]: behind the last bond is one whose multiplier is 0
-    Row *row;
+    ChainRow *row;
     vec *tau;                    // [n+1], times `unit`
     vec *correction;             // [n+1], the last one
     vec *step;                   // what D has not been moved by yet: tau, or the last correction
@@ -39,7 +39,7 @@ struct Newton : BondLengths {
     const double *next[3] = {};  // where the block's atoms begin, for those of the next one to be fetched early
     Newton(long n, Arena &arena)
         : b(reinterpret_cast<vec3 *>(arena.vecs(3 * (n + W)))), D(reinterpret_cast<vec3 *>(arena.vecs(3 * (n + W)))),
-          row(reinterpret_cast<Row *>(arena.vecs(4 * n))), tau(arena.vecs(n + 1)), correction(arena.vecs(n + 1)),
+          row(reinterpret_cast<ChainRow *>(arena.vecs(4 * n))), tau(arena.vecs(n + 1)), correction(arena.vecs(n + 1)),
           step(tau) {
         b[n] = vec3{};
         tau[n] = correction[n] = vec{};

@@ -85,7 +85,7 @@ void batches_positions(const PositionsCall &call, const MoleculeUnit &unit, doub
         BatchPositions lanes = {{call, lane, tally}, newton, ahead};
         unsigned rest;
         if (f.n_tiles > 0) {
-            const LargeTreeNewton one{newton, unit.team, reinterpret_cast<LargeTreeNewton::Found *>(memory.next)};
+            const LargeTreeNewton one{newton, unit.team, reinterpret_cast<LargeTreeNewton::FoundOfTile *>(memory.next)};
             memory.next += LargeTreeNewton::bytes(f) / static_cast<int64_t>(sizeof(double));
             LargeTreePositions tree = {{call, lane, tally}, one, lanes};
             rest = solve_positions(tree, ScalarMask{true}, [] {});

@@ -147,7 +147,7 @@ void Chains::for_bonds(const Each &each) const {
         }
     }
     for (std::size_t k = 0; k < unconstrained_.size(); ++k) {
-        const Given &given = of_unconstrained_[k];
+        const LeftOut &given = of_unconstrained_[k];
         const bool implied = std::binary_search(implied_.begin(), implied_.end(), unconstrained_[k]);
         each(unconstrained_[k], given.atoms[0], given.atoms[1], given.length, implied ? Role::implied : Role::fixed);
     }
@@ -206,7 +206,7 @@ std::int64_t Chains::memory() const {
     const Plan *const plan = plan_.there(), *const of_parts = plan_of_parts_.there();
     return static_cast<std::int64_t>(sizeof *this + masses_.bytes() + use_.bytes() + kinds_.bytes() + shapes_.bytes() +
                                      groups_.bytes() + unconstrained_.capacity() * sizeof(std::int64_t) +
-                                     of_unconstrained_.capacity() * sizeof(Given) + active_.capacity() +
+                                     of_unconstrained_.capacity() * sizeof(LeftOut) + active_.capacity() +
                                      backwards_.capacity()) +
            labels_.bytes() + (bodies_ ? bodies_->bytes() : 0) + (plan ? plan->bytes() : 0) +
            (of_parts ? of_parts->bytes() : 0);

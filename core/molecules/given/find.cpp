@@ -130,7 +130,7 @@ private:
         std::vector<std::size_t> next(at(number_.size() >> shift) + 2, 0);
         for (std::size_t p = 0; p < n_bonds; ++p) ++next[at(least_atom(p) >> shift) + 1];
         for (std::size_t b = 1; b < next.size(); ++b) next[b] += next[b - 1];
-        std::vector<Entry> entry(n_bonds), sorted;
+        std::vector<ListedBond> entry(n_bonds), sorted;
         for (std::size_t p = 0; p < n_bonds; ++p)
             entry[next[at(least_atom(p) >> shift)]++] = {end_[2 * p], end_[2 * p + 1], static_cast<std::int32_t>(p)};
         bond_at_.resize(n_bonds);
@@ -138,7 +138,7 @@ private:
         for (std::size_t b = 0, begin = 0; begin < n_bonds; begin = next[b++]) {
             sort_part(entry.data() + begin, next[b] - begin, shift, sorted);
             for (std::size_t p = begin; p < next[b]; ++p) {
-                const Entry &e = sorted[p - begin];
+                const ListedBond &e = sorted[p - begin];
                 end_[2 * p] = e.i;
                 end_[2 * p + 1] = e.j;
                 bond_at_[p] = e.bond;
@@ -146,13 +146,13 @@ private:
         }
     }
 
-    struct Entry {
+    struct ListedBond {
         std::int32_t i, j, bond;
     };
 
     // Entries whose lower atoms differ in their last `shift` bits only; counts.
-    static void sort_part(const Entry *entry, std::size_t n, int shift, std::vector<Entry> &sorted) {
-        const auto place = [shift](const Entry &e) { return at(std::min(e.i, e.j) & ((1 << shift) - 1)); };
+    static void sort_part(const ListedBond *entry, std::size_t n, int shift, std::vector<ListedBond> &sorted) {
+        const auto place = [shift](const ListedBond &e) { return at(std::min(e.i, e.j) & ((1 << shift) - 1)); };
         std::vector<std::uint32_t> next((std::size_t{1} << shift) + 1, 0);
         for (std::size_t p = 0; p < n; ++p) ++next[place(entry[p]) + 1];
         for (std::size_t i = 1; i < next.size(); ++i) next[i] += next[i - 1];

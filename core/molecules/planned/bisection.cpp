@@ -149,7 +149,7 @@ public:
     }
 
 private:
-    enum State : unsigned char { outside, entered, moved };
+    enum Visit : unsigned char { outside, entered, moved };
 
     void enter(std::int32_t i) {
         gains_[side_[at(i)]].enter(i, gain_[at(i)]);

@@ -18,7 +18,7 @@ void add_large_tree(EliminationPlan &s, EliminationPlan::Memory::Large &m) {
     s.n_arms = static_cast<std::int32_t>(m.arms.arm.size());
     if (s.n_arms == 0) {
         m.runs = runs_of(s);
-        if (!fills_lanes(s, places_in_lanes(m.runs))) {
+        if (!fills_lanes(s, elements_in_lanes(m.runs))) {
             m.runs = {};
             return;
         }

@@ -10,8 +10,8 @@
 
 namespace holonomic {
 
-// The ends at a node are all coupled to each other. Of more than these, three numbers of its acceleration take the
-// place of that: they are unknowns, too, and couple to each end alone.
+// The ends at a node are all coupled to each other. Of more than these, three numbers of its acceleration stand
+// for that: they are unknowns, too, and couple to each end alone.
 constexpr std::int32_t most_at_node = 64;
 
 // What is divided among fronts: *cells*, which are all other nodes, and strands of several bonds between two hubs.

@@ -146,7 +146,7 @@ private:
         plan_->n_bonds += (end - begin) * k.n_bonds;
         plan_->reordered = plan_->reordered || (where & reordered) != 0;
         plan_->copied = plan_->copied || ((where & reordered) && !lists_bonds(k.shape));
-        Stretch run{g, begin, end, stage, -1, k.n_bonds, k.shape, where};
+        StretchOfGroup run{g, begin, end, stage, -1, k.n_bonds, k.shape, where};
         if (k.shape != linear || plan_->part_start.empty()) return add_chunks(run);
         for (run.part = plan_->part_start[at(groups_[at(g)].kind)];
              run.part < plan_->part_start[at(groups_[at(g)].kind + 1)]; ++run.part) {
@@ -156,13 +156,13 @@ private:
     }
 
     // Molecules of a group, or of each its part.
-    struct Stretch {
+    struct StretchOfGroup {
         std::int64_t group, begin, end, stage, part, n_bonds;
         std::int32_t shape;
         int where;
     };
 
-    void add_chunks(const Stretch &run) {
+    void add_chunks(const StretchOfGroup &run) {
         if (run.shape == linear) {
             plan_->longest = std::max(plan_->longest, run.n_bonds);
         } else {

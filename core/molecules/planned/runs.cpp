@@ -86,12 +86,12 @@ private:
 TreeRuns runs_of(const EliminationPlan &s) { return RunMaker(s).make(); }
 
 // Counted for lanes that are as many as most have, whatever those of the kernels are.
-std::int64_t places_in_lanes(const TreeRuns &runs) {
+std::int64_t elements_in_lanes(const TreeRuns &runs) {
     constexpr std::int64_t lanes = 8;
-    std::int64_t places = 0;
+    std::int64_t elements = 0;
     for (const EliminationPlan::AtomRun &run : runs.run)
-        places += (run.count + lanes - 1) / lanes * lanes * run.children;
-    return places;
+        elements += (run.count + lanes - 1) / lanes * lanes * run.children;
+    return elements;
 }
 
 }  // namespace holonomic

@@ -17,7 +17,7 @@ struct TreeRuns {
 // From the parents and the children of an elimination plan. Takes O(n).
 TreeRuns runs_of(const EliminationPlan &s);
 
-// In how many places of lanes the atoms of a large tree stand, empty ones included.
-std::int64_t places_in_lanes(const TreeRuns &runs);
+// How many elements the atoms of a large tree take in lanes, empty ones included (core/plan/tree_batch.hpp).
+std::int64_t elements_in_lanes(const TreeRuns &runs);
 
 }  // namespace holonomic

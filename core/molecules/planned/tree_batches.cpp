@@ -82,7 +82,7 @@ struct Choice {
     double worth = -1;
 };
 
-// The class in which the fewest places stay empty; a step by itself costs about as much as a third of a bond.
+// The class in which the fewest rows stay empty; a step by itself costs about as much as a third of a bond.
 Choice choose(const GrowingTree *trees, std::size_t n_trees) {
     Choice best;
     for (int c = 0; c < n_classes; ++c) {
@@ -144,7 +144,7 @@ public:
 
     // index: of each lane, or -1.
     void add_step(const std::int32_t *index, std::int32_t children) {
-        steps_.push_back({f_.n_places, children, f_.n_pairs});
+        steps_.push_back({f_.n_bond_rows, children, f_.n_pairs});
         tile_.push_back(f_.n_tiles);
         for (std::size_t l = 0; l < at(lanes_); ++l) {
             indices_.push_back(index[l]);
@@ -152,9 +152,9 @@ public:
             const EliminationPlan &s = tree(l);
             for (std::int32_t a = 0; a < children_of(s, index[l]); ++a)
                 element_of(l, s.child[s.child_start[index[l]] + a]) =
-                    (f_.n_places + a) * lanes_ + static_cast<std::int32_t>(l);
+                    (f_.n_bond_rows + a) * lanes_ + static_cast<std::int32_t>(l);
         }
-        f_.n_places += children;
+        f_.n_bond_rows += children;
         f_.n_pairs += values_of_joint(children);
         f_.most_children = std::max(f_.most_children, children);
     }
@@ -172,7 +172,7 @@ public:
                                all.tile_start_.size()});
         all.batch_.push_back(f_);
         all.elimination_.insert(all.elimination_.end(), tree_, tree_ + n_trees_);
-        all.held_.resize(all.held_.size() + at(f_.n_places));
+        all.held_.resize(all.held_.size() + at(f_.n_bond_rows));
         if (all.is_stored(f_)) return list(all.stored_, &all.held_[all.offset_.back().held]);
         list(all.numbers_, &all.held_[all.offset_.back().held]);
         if (f_.n_tiles > 0) all.numbers_.insert(all.numbers_.end(), element_[0].begin(), element_[0].end());
@@ -183,32 +183,32 @@ private:
     // Appends the block of numbers.
     template <class Number>
     void list(std::vector<Number> &numbers, std::uint16_t *held) {
-        const std::size_t lanes = at(lanes_), n_steps = steps_.size() * lanes, n_places = at(f_.n_places) * lanes;
+        const std::size_t lanes = at(lanes_), n_steps = steps_.size() * lanes, n_bond_rows = at(f_.n_bond_rows) * lanes;
         for (const TreeBatch::Step &step : steps_)
             for (const std::int32_t number : {step.first, step.children, step.pairs})
                 numbers.push_back(static_cast<Number>(number));
         const std::size_t first = numbers.size();
-        numbers.resize(first + 2 * (n_steps + n_places));
+        numbers.resize(first + 2 * (n_steps + n_bond_rows));
         Number *const atom = &numbers[first], *const above = atom + n_steps, *const lower = above + n_steps,
-                      *const bond = lower + n_places;
+                      *const bond = lower + n_bond_rows;
         for (std::size_t i = 0; i < n_steps; ++i) {
             const std::int32_t index = indices_[i], lane = static_cast<std::int32_t>(i % lanes);
             const EliminationPlan &s = tree(at(lane));
             const TreeBatch::Step &step = steps_[i / lanes];
-            std::int32_t element = (f_.n_places + 1 + tile_[i / lanes]) * lanes_ + lane;
+            std::int32_t element = (f_.n_bond_rows + 1 + tile_[i / lanes]) * lanes_ + lane;
             if (index >= 0) {
                 atom[i] = static_cast<Number>(s.atom_of[index]);
-                element = index == s.n_tree ? f_.n_places * lanes_ + lane : element_of(at(lane), index);
+                element = index == s.n_tree ? f_.n_bond_rows * lanes_ + lane : element_of(at(lane), index);
             }
             above[i] = static_cast<Number>(element);
             const std::int32_t children = index < 0 ? 0 : children_of(s, index);
             for (std::int32_t a = 0; a < step.children; ++a) {
-                const std::size_t p = at(step.first + a), place = p * lanes + at(lane);
-                lower[place] = atom[i];
+                const std::size_t p = at(step.first + a), own = p * lanes + at(lane);
+                lower[own] = atom[i];
                 if (a >= children) continue;
                 const std::int32_t child = s.child[s.child_start[index] + a];
-                lower[place] = static_cast<Number>(s.atom_of[child]);
-                bond[place] = static_cast<Number>(s.bond_of[child]);
+                lower[own] = static_cast<Number>(s.atom_of[child]);
+                bond[own] = static_cast<Number>(s.bond_of[child]);
                 held[p] = static_cast<std::uint16_t>(held[p] | 1u << lane);
             }
         }

@@ -46,7 +46,7 @@ private:
     std::vector<const EliminationPlan *> elimination_;
 };
 
-// Trees with nearly the same profile leave few places empty: how many atoms have four children and more, three, two.
+// Trees with nearly the same profile leave few rows empty: how many atoms have four children and more, three, two.
 struct TreeProfile {
     std::int32_t n_bonds = 0, many = 0, three = 0, two = 0;
     TreeProfile() = default;

@@ -110,8 +110,8 @@ bool is_large_tree(const EliminationPlan &s) { return s.type == EliminationPlan:
 bool is_mostly_arms(const EliminationPlan &s, std::int64_t bonds_in_arms) { return 2 * bonds_in_arms >= s.n_bonds; }
 
 // Not where most atoms stand one behind the other.
-bool fills_lanes(const EliminationPlan &s, std::int64_t places) {
-    return places <= 3 * static_cast<std::int64_t>(s.n_bonds);
+bool fills_lanes(const EliminationPlan &s, std::int64_t elements) {
+    return elements <= 3 * static_cast<std::int64_t>(s.n_bonds);
 }
 
 // A graph that would have a long list is a network.

@@ -23,10 +23,11 @@ std::int64_t most_bytes_of_ldl(const EliminationPlan &s);
 // What the order for the extended-precision solver may fill, which a network has besides; 0: it has none.
 std::int64_t most_bytes_of_extended(const EliminationPlan &s);
 
-// A tree that comes alone; whether it is mostly arms, and else whether its atoms fill lanes, in so many places.
+// A tree that comes alone; whether it is mostly arms, and else whether its atoms fill lanes, of which they take so many
+// elements.
 bool is_large_tree(const EliminationPlan &s);
 bool is_mostly_arms(const EliminationPlan &s, std::int64_t bonds_in_arms);
-bool fills_lanes(const EliminationPlan &s, std::int64_t places);
+bool fills_lanes(const EliminationPlan &s, std::int64_t elements);
 
 // Whether a molecule needs a list, and whether paths are looked for.
 bool takes_ldl(const EliminationPlan &s, const Lists &bonds);

@@ -13,7 +13,7 @@ namespace holonomic_lammps {
 namespace {
 
 /** A bond on its way to the bookkeeper of its molecule. */
-struct Entry {
+struct SentBond {
     Tag molecule;
     RigidBond bond;
 };
@@ -135,7 +135,7 @@ std::vector<Node> Registry::collect(const std::vector<RigidBond> &bonds, const s
 
 /** Sends each bond to the bookkeeper of its molecule, who makes the shape and tells the bookkeepers of its atoms. */
 void Registry::build(const std::vector<Node> &nodes, int dimensions, double tolerance) {
-    Outgoing<Entry> outgoing(n_ranks_);
+    Outgoing<SentBond> outgoing(n_ranks_);
     Outgoing<Part> of_bodies(n_ranks_);
     for (const Node &node : nodes) {
         for (const InBody &in : node.bodies)
@@ -148,8 +148,9 @@ void Registry::build(const std::vector<Node> &nodes, int dimensions, double tole
     }
     std::map<Tag, std::vector<BodyAtom>> bodies;
     for (const Part &part : route(world_, of_bodies).items) bodies[part.molecule].push_back(part.atom);
-    std::vector<Entry> entries = route(world_, outgoing).items;
-    std::sort(entries.begin(), entries.end(), [](const Entry &a, const Entry &b) { return a.molecule < b.molecule; });
+    std::vector<SentBond> entries = route(world_, outgoing).items;
+    std::sort(entries.begin(), entries.end(),
+              [](const SentBond &a, const SentBond &b) { return a.molecule < b.molecule; });
     Outgoing<Note> notes(n_ranks_);
     std::map<Shape, Shape> examined;
     for (std::size_t begin = 0, end = 0; begin < entries.size(); begin = end) {

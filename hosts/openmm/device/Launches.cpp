@@ -44,7 +44,7 @@ std::int64_t maxEntriesOfThread(const ComputeContext &device) {
     return device.getIsCPU() ? 300 : -1;
 }
 
-struct Destroy {
+struct DestroyPlan {
     void operator()(hol_device_plan *plan) const { hol_device_plan_destroy(plan); }
 };
 
@@ -53,7 +53,7 @@ struct Destroy {
 Launches::Launches(ComputeContext &device, const hol_chains *chains) : context(device) {
     hol_device_plan *made = nullptr;
     ask(hol_device_plan_create(chains, precisionOf(device), maxEntriesOfThread(device), &made));
-    const std::unique_ptr<hol_device_plan, Destroy> plan(made);
+    const std::unique_ptr<hol_device_plan, DestroyPlan> plan(made);
     left.resize(hol_device_plan_n_left(made));
     ask(hol_device_plan_left(made, left.data()));
     if (hol_device_plan_n_launches(made) == 0) return;

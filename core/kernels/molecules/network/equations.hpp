@@ -48,7 +48,7 @@ struct NetEquations {
 
     // Reads what right-hand sides are made of. Velocities that will be projected are kept.
     template <class V>
-    HOL_FORCED NetTerms<V> read_terms(const NetSites::Reader<V> &read, const V &mass) const {
+    HOL_FORCED NetTerms<V> read_terms(const NetSites::SiteReader<V> &read, const V &mass) const {
         const Vector3<V> none = {}, velocity = has(squares | rates) ? read(*in.v) : none,
                          push = has(pulls) ? mass * read(*in.f) : none;
         if (has(rates)) v.set(read.site, velocity);

@@ -37,24 +37,24 @@ struct NetSites {
     }
     // Where atoms of lanes from this site on stand in packed arrays.
     template <class V>
-    struct Rows {
+    struct SiteRows {
         int64_t element[Width<V>::lanes];
     };
     template <class V>
-    HOL_FORCED Rows<V> rows_of(int32_t site) const {
+    HOL_FORCED SiteRows<V> rows_of(int32_t site) const {
         const int32_t *const atom = s.atom_of + site;
         const int64_t *const list = at.list[0], first = at.first[0];
-        Rows<V> rows;
+        SiteRows<V> rows;
         HOL_UNROLL
         for (int i = 0; i < Width<V>::lanes; ++i) rows.element[i] = 3 * (list ? list[atom[i]] : first + atom[i]);
         return rows;
     }
     // What reads a site's atoms: from several arrays, with what is fetched ahead for those of later sites.
     template <class V>
-    struct Reader {
+    struct SiteReader {
         const NetSites &of;
         const int32_t site;
-        const Rows<V> here, ahead;
+        const SiteRows<V> here, ahead;
         HOL_FORCED Vector3<V> operator()(const AtomArray &from) const {
             if (__builtin_expect(of.at.layout == elements, 0)) return of.read_elements<V>(from, site);
             const double *const x = reinterpret_cast<const double *>(from.x), *p[Width<V>::lanes];
@@ -69,8 +69,8 @@ struct NetSites {
         }
     };
     template <class V>
-    HOL_FORCED Reader<V> reader(int32_t site) const {
-        return {*this, site, rows_of<V>(site), far ? rows_of<V>(site + s.fetched_ahead) : Rows<V>{}};
+    HOL_FORCED SiteReader<V> reader(int32_t site) const {
+        return {*this, site, rows_of<V>(site), far ? rows_of<V>(site + s.fetched_ahead) : SiteRows<V>{}};
     }
     HOL_FORCED void fetch(const AtomArray &array, int32_t site) const {
         if (at.layout != elements)
@@ -109,7 +109,7 @@ struct NetSites {
             const Vector3<V> copy = a;
             return write_elements(to, site, left, add, copy);
         }
-        const Rows<V> here = rows_of<V>(site), ahead = far ? rows_of<V>(site + s.fetched_ahead) : Rows<V>{};
+        const SiteRows<V> here = rows_of<V>(site), ahead = far ? rows_of<V>(site + s.fetched_ahead) : SiteRows<V>{};
         double *const x = reinterpret_cast<double *>(to.x), *p[Width<V>::lanes];
         HOL_UNROLL
         for (int i = 0; i < Width<V>::lanes; ++i) {

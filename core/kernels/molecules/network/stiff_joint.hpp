@@ -17,17 +17,17 @@ HOL_INLINE double left_of(double y, const Vector3<double> &D, const Pair3<double
 }
 
 struct StiffJoints {
-    struct Joint {
+    struct StiffJoint {
         Pair3<double> row[3];  // the inverse mass that children leave
     };
-    Joint *joint;
+    StiffJoint *joint;
     int32_t *is;          // whether it is one; else nothing is known of it
     Pair3<double> *push;  // from the children's y
 
     static int64_t values_of_factor(int32_t n) { return in_fours(18 * static_cast<int64_t>(n)) + in_fours(n / 2 + 1); }
     static int64_t values(int32_t n) { return values_of_factor(n) + in_fours(6 * static_cast<int64_t>(n)); }
     StiffJoints(int32_t n, Memory<double> &of_factor, Memory<double> &memory)
-        : joint(reinterpret_cast<Joint *>(of_factor.values(in_fours(18 * static_cast<int64_t>(n))))),
+        : joint(reinterpret_cast<StiffJoint *>(of_factor.values(in_fours(18 * static_cast<int64_t>(n))))),
           is(reinterpret_cast<int32_t *>(of_factor.values(in_fours(n / 2 + 1)))),
           push(reinterpret_cast<Pair3<double> *>(memory.values(in_fours(6 * static_cast<int64_t>(n))))) {}
 

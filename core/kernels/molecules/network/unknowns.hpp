@@ -52,7 +52,7 @@ struct Unknowns : Ends {
 
 private:
     __attribute__((noinline)) int32_t iterate(double part, const double *sizes) const {
-        Sums<double> all = sums_of_shares([&](int32_t share, Parts &parts) {
+        Sums<double> all = sums_of_shares([&](int32_t share, SumsOfShare &parts) {
             net.for_unknowns(share, [&](auto width, int32_t u) HOL_FORCED {
                 typedef decltype(width) V;
                 const V whole = load_any<V>(y + u), of_terms = sizes ? gather<V>(sizes, s.bond_index_of + u) : V{};
@@ -80,7 +80,7 @@ private:
                 sums.a = mul_add(load_any<decltype(width)>(shadow + u), product, sums.a);
             });
             const double alpha = rho / all.a;
-            all = sums_of_shares([&](int32_t share, Parts &parts) {
+            all = sums_of_shares([&](int32_t share, SumsOfShare &parts) {
                 net.for_unknowns(share,
                                  [&](auto width, int32_t u) HOL_FORCED { step(width, u, alpha, p_node, v, parts); });
                 if (!direct) solve_nodes(share, r, s_node);
@@ -93,7 +93,7 @@ private:
                 sums.b = mul_add(product, product, sums.b);
             });
             const double omega = all.a / all.b;
-            all = sums_of_shares([&](int32_t share, Parts &parts) {
+            all = sums_of_shares([&](int32_t share, SumsOfShare &parts) {
                 net.for_unknowns(share, [&](auto width, int32_t u) HOL_FORCED {
                     const auto left = step(width, u, omega, s_node, t, parts);
                     auto &sums = parts.of(width);
@@ -132,7 +132,7 @@ private:
         V a, b, most;
     };
     // Of a share, in lanes and of what is left of it.
-    struct Parts {
+    struct SumsOfShare {
         Sums<vec> lanes;
         Sums<double> rest;
         HOL_FORCED Sums<vec> &of(const vec &) { return lanes; }
@@ -164,7 +164,7 @@ private:
                 });
             });
             const double before = all.a;
-            all = sums_of_shares([&](int32_t share, Parts &parts) {
+            all = sums_of_shares([&](int32_t share, SumsOfShare &parts) {
                 net.for_unknowns(share, [&](auto width, int32_t u) HOL_FORCED {
                     typedef decltype(width) V;
                     const V left = -(load_any<V>(coupling + u) * gather<V>(p_node, s.partner + u));
@@ -200,7 +200,7 @@ private:
     // returns.
     template <class V>
     HOL_FORCED V step(const V &, int32_t u, double so_far, const double *along, const double *product,
-                      Parts &parts) const {
+                      SumsOfShare &parts) const {
         const V far = Width<V>::all(so_far);
         const V left = mul_add(Width<V>::all(-so_far), load_any<V>(product + u), load_any<V>(r + u));
         store_any(x + u, mul_add(far, load_any<V>(along + u), load_any<V>(x + u)));
@@ -220,7 +220,7 @@ private:
     template <class Body>
     HOL_FORCED Sums<double> sums_of_shares(const Body &body) const {
         net.for_node_shares([&](int32_t share) {
-            Parts parts = {};
+            SumsOfShare parts = {};
             body(share, parts);
             double most = parts.rest.most;
             for (int i = 0; i < W; ++i) most = max(Width<vec>::get(parts.lanes.most, i), most);
@@ -241,7 +241,7 @@ private:
     template <class Body>
     HOL_FORCED Sums<double> multiply(const double *own, const double *of, double *to, const Body &body) const {
         if (s.has_foreign || direct) accelerate_nodes(of);
-        return sums_of_shares([&](int32_t share, Parts &parts) {
+        return sums_of_shares([&](int32_t share, SumsOfShare &parts) {
             Ends::multiply(share, direct ? nullptr : own, of, to);
             net.for_unknowns(share, [&](auto width, int32_t u) HOL_FORCED {
                 body(width, u, load_any<decltype(width)>(to + u), parts.of(width));

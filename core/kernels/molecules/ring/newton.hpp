@@ -23,12 +23,12 @@ struct RingNewton {
     struct Closure {
         V l, c;
     };
-    struct System {
+    struct RingSystem {
         const EliminationPlan &s;
         V *w;               // [N]
         NewtonRow<V> *row;  // t: u = y / P; up: of y, what the row before gives; down: of the correction behind
     };
-    System x;
+    RingSystem x;
     Closure *closure;  // [N - 1]
     V *lengths;        // least and largest
 
@@ -62,7 +62,7 @@ struct RingNewton {
     }
 
     // The bond vectors as tau moves them, one after the other, the last one first.
-    struct Mover {
+    struct RingMover {
         Vector3<V> pull, left, first;  // of the bond before, and the displacement of the atom behind it; of atom 0
         HOL_FORCED Vector3<V> last(const RingNewton &z) {
             const int32_t n = z.x.s.n_bonds - 1;
@@ -106,7 +106,7 @@ struct RingNewton {
     }
 
     // E as a fraction A / F, as in eliminate/effective_mass.hpp.
-    struct Fraction {
+    struct RingFraction {
         V A, F;
     };
 
@@ -115,13 +115,13 @@ struct RingNewton {
     __attribute__((noinline)) V eliminate(MaskOf<V> which) {
         NewtonRow<V> *const row = x.row;
         const int32_t n = x.s.n_bonds - 1;
-        Mover mover;
+        RingMover mover;
         const Vector3<V> D_n = moved ? mover.last(*this) : row[n].D;
         Vector3<V> d = moved ? mover.bond(*this, 0) : row[0].D;
         V worst = {}, y = {}, down = {}, q = dot(d, row[0].b), y_n = length_left<true, all>(row[n], D_n, worst, which);
         V to_last = x.w[0] * dot(D_n, row[0].b), from_last = x.w[0] * dot(d, row[n].b);
         V P_n = (x.w[n] + x.w[0]) * dot(D_n, row[n].b);
-        Fraction e = {x.w[0] * q, Width<V>::all(1)};
+        RingFraction e = {x.w[0] * q, Width<V>::all(1)};
         for (int32_t k = 0; k < n; ++k) {
             NewtonRow<V> &here = row[k];
             const V w = x.w[k + 1];
@@ -173,7 +173,7 @@ struct RingNewton {
     __attribute__((noinline)) V move() {
         NewtonRow<V> *const row = x.row;
         const int32_t n = x.s.n_bonds - 1;
-        Mover mover;
+        RingMover mover;
         V worst = {}, y = {}, y_n = length_left<false, true>(row[n], mover.last(*this), worst);
 #pragma GCC unroll 2
         for (int32_t k = 0; k < n; ++k) {

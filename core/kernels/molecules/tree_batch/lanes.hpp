@@ -1,4 +1,4 @@
-// What each lane of a batch of trees reads and writes by numbers of its own: atoms of the caller's arrays, and places
+// What each lane of a batch of trees reads and writes by numbers of its own: atoms of the caller's arrays, and rows
 // of working arrays.
 #pragma once
 
@@ -31,9 +31,9 @@ HOL_INLINE double *element_of(Row *first, int32_t element) {
 
 // Working values at an element of its own in each lane.
 template <class Row>
-struct AtPlaces {
+struct AtRows {
     double *p[W];
-    HOL_FORCED AtPlaces(Row *first, const int32_t *element) {
+    HOL_FORCED AtRows(Row *first, const int32_t *element) {
         HOL_UNROLL
         for (int i = 0; i < W; ++i) p[i] = element_of(first, element[i]);
     }
@@ -167,7 +167,7 @@ struct BatchTrees {
 
     const int32_t *atom_of(int32_t step) const { return f.atom + static_cast<int64_t>(step) * W; }
     const int32_t *above_of(int32_t step) const { return f.above + static_cast<int64_t>(step) * W; }
-    const int32_t *lower_of(int32_t place) const { return f.lower + static_cast<int64_t>(place) * W; }
+    const int32_t *lower_of(int32_t p) const { return f.lower + static_cast<int64_t>(p) * W; }
     // Starts to fetch what atoms some numbers further on are read from, numbers[i ..] of n times as many as there are
     // lanes, where they don't stand in a cache.
     template <bool packed, bool masses, class... Arrays>
@@ -183,58 +183,56 @@ struct BatchTrees {
         }
     }
     // Where the value of a bond stands in the caller's arrays.
-    int64_t bond_of(int i, int32_t place) const {
-        return lane[i].first_bond + f.bond[static_cast<int64_t>(place) * W + i];
-    }
+    int64_t bond_of(int i, int32_t p) const { return lane[i].first_bond + f.bond[static_cast<int64_t>(p) * W + i]; }
 
-    // Writes the bonds' values at a place, in some lanes.
-    HOL_FORCED void write_values(int32_t place, unsigned lanes, const vec &a, double *out) const {
+    // Writes the bonds' values of a row, in some lanes.
+    HOL_FORCED void write_values(int32_t p, unsigned lanes, const vec &a, double *out) const {
         if (__builtin_expect(lanes == all_lanes, 1)) {
             HOL_UNROLL
-            for (int i = 0; i < W; ++i) out[bond_of(i, place)] = a[i];
+            for (int i = 0; i < W; ++i) out[bond_of(i, p)] = a[i];
             return;
         }
         for (int i = 0; i < W; ++i)
-            if (lanes >> i & 1) out[bond_of(i, place)] = a[i];
+            if (lanes >> i & 1) out[bond_of(i, p)] = a[i];
     }
 
-    // Steps, and their places; `root`: the last of them is that of the roots.
+    // Steps, and their rows; `root`: the last of them is that of the roots.
     struct Range {
         int32_t step, end_step, row, end_row;
         bool root;
         int32_t inner_end() const { return root ? end_step - 1 : end_step; }
     };
-    Range all() const { return {0, f.n_steps, 0, f.n_places, true}; }
-    int32_t row_of(int32_t step) const { return step < f.n_steps ? f.step[step].first : f.n_places; }
+    Range all() const { return {0, f.n_steps, 0, f.n_bond_rows, true}; }
+    int32_t row_of(int32_t step) const { return step < f.n_steps ? f.step[step].first : f.n_bond_rows; }
     // Of one large tree; tile n_tiles is the top.
     Range tile(int32_t p) const {
         const int32_t step = f.tile_start[p], end = f.tile_start[p + 1];
         return {step, end, row_of(step), row_of(end), p == f.n_tiles};
     }
 
-    // Calls body(place, bits of the lanes of `which` that hold a bond there).
+    // Calls body(p, bits of the lanes of `which` that hold a bond there).
     template <class Body>
     HOL_FORCED void for_held(const Range &range, unsigned which, const Body &body) const {
         for (int32_t p = range.row; p < range.end_row; ++p)
             if (const unsigned held = f.held[p] & which) body(p, held);
     }
-    // Calls write(place, atom, lanes) for the atoms of these arrays in the lanes of which & ~but(place).
+    // Calls write(p, atom, lanes) for the atoms of these arrays in the lanes of which & ~but(p).
     template <class But, class Write, class... Arrays>
     HOL_FORCED void for_atoms(const Range &range, unsigned which, const But &but, const Write &write,
                               const Arrays &...arrays) const {
         choose(
             [&](auto packed) HOL_FORCED {
                 for_held(range, which, [&](int32_t p, unsigned lanes) HOL_FORCED {
-                    fetch<packed, false>(f.lower, p, f.n_places, arrays...);
+                    fetch<packed, false>(f.lower, p, f.n_bond_rows, arrays...);
                     write(p, BatchAtom<packed>(at, lower_of(p)), lanes & ~but(p));
                 });
                 if (!range.root) return;
-                write(f.n_places, BatchAtom<packed>(at, atom_of(f.n_steps - 1)),
-                      which & bits(first_lanes(f.n_trees)) & ~but(f.n_places));
+                write(f.n_bond_rows, BatchAtom<packed>(at, atom_of(f.n_steps - 1)),
+                      which & bits(first_lanes(f.n_trees)) & ~but(f.n_bond_rows));
             },
             at.layout != elements);
     }
-    // Writes value(place, atom) of the atoms' vectors.
+    // Writes value(p, atom) of the atoms' vectors.
     template <class Value>
     HOL_FORCED void write_atoms(const Range &range, const AtomArray &array, unsigned which, const Value &value) const {
         for_atoms(

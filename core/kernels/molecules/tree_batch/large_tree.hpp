@@ -129,7 +129,7 @@ struct LargeTree {
     }
     // In t of the rows.
     void find_row_of_inverse(int32_t element) const {
-        for (int32_t place = 0; place < z.f.n_places; ++place) z.row[place].t = vec{};
+        for (int32_t p = 0; p < z.f.n_bond_rows; ++p) z.row[p].t = vec{};
         z.row[element / W].t[element % W] = 1;
         for_tiles([&](int32_t p) { z.substitute(z.tile(p), memory(p)); });
         z.substitute(z.tile(top()), memory(top()));
@@ -140,7 +140,7 @@ struct LargeTree {
     double terms_by_row() const {
         const BatchJoint joint(z, 0);
         double sum = 0;
-        for (int32_t e = 0; e < z.f.n_places * W; ++e)
+        for (int32_t e = 0; e < z.f.n_bond_rows * W; ++e)
             if (z.f.held[e / W] >> e % W & 1) sum += abs(z.row[e / W].t[e % W]) * joint.terms_of_bond(e);
         return sum;
     }

@@ -20,17 +20,17 @@ HOL_INLINE double largest_of(const vec &a) {
 struct LargeTreeNewton {
     typedef BatchTrees::Range Range;
     // What has been found of a tile.
-    struct Found {
+    struct FoundOfTile {
         double error, coordinate, least, most;
     };
     BatchNewton &x;
     const LongTeam *team;
-    Found *found;        // [n_tiles + 1]
+    FoundOfTile *found;  // [n_tiles + 1]
     double opening = 0;  // the largest error of the bonds as they came
     bool eliminated = false, displaced = false, moved = false;
 
     static int64_t bytes(const TreeBatch &f) {
-        return (f.n_tiles > 0 ? f.n_tiles + 1 : 0) * static_cast<int64_t>(sizeof(Found));
+        return (f.n_tiles > 0 ? f.n_tiles + 1 : 0) * static_cast<int64_t>(sizeof(FoundOfTile));
     }
     int32_t top() const { return x.f.n_tiles; }
     Memory<vec> memory(int32_t p) const {
@@ -97,7 +97,7 @@ struct LargeTreeNewton {
 
     void forget(ScalarMask which) {
         if (!which.set) return;
-        for (int32_t p = 0; p < x.f.n_places; ++p) x.row[p].tau = vec{};
+        for (int32_t p = 0; p < x.f.n_bond_rows; ++p) x.row[p].tau = vec{};
         displaced = false;
     }
     void solve(ScalarMask) {

@@ -14,10 +14,10 @@ struct BatchLinear : BatchTrees {
     const AtomArray &r;
     Inputs in;
     const int terms;      // of right-hand sides: RightHandSide
-    BondRow<vec> *row;    // [n_rows] by place
-    vec3 *pull;           // [n_rows] G of the lower atom; at n_places, of the root
+    BondRow<vec> *row;    // [n_rows]
+    vec3 *pull;           // [n_rows] G of the lower atom; at n_bond_rows, of the root
     vec3 *velocity;       // likewise, for rates
-    vec *w, *lower_w;     // [n_steps], [n_places]
+    vec *w, *lower_w;     // [n_steps], [n_bond_rows]
     vec *pair;            // [n_pairs] multipliers among the children of an atom
     vec margin;           // negative where plain products do not do
     Memory<vec> working;  // of a joint of many bonds
@@ -43,7 +43,7 @@ struct BatchLinear : BatchTrees {
         pair = memory.values(f.n_pairs);
         working = memory;
         memory.values((1 + f.n_tiles) * joint_values(f));
-        for (int64_t p = f.n_places; p < rows; ++p) {
+        for (int64_t p = f.n_bond_rows; p < rows; ++p) {
             row[p] = BondRow<vec>{};
             pull[p] = velocity[p] = vec3{};
         }
@@ -54,13 +54,13 @@ struct BatchLinear : BatchTrees {
     // The local atoms that the bond of an element joins. They are looked for in the batch of trees's own lists: the
     // elimination plans of different trees are seldom in a cache.
     void ends(int32_t element, int32_t *atom) const {
-        const int32_t place = element / W;
+        const int32_t p = element / W;
         int32_t step = 0;
         for (int32_t end = f.n_steps; end - step > 1;) {
             const int32_t middle = step + (end - step) / 2;
-            (f.step[middle].first <= place ? step : end) = middle;
+            (f.step[middle].first <= p ? step : end) = middle;
         }
-        atom[1] = lower_of(place)[element % W];
+        atom[1] = lower_of(p)[element % W];
         atom[0] = atom_of(step)[element % W];
     }
 
@@ -84,7 +84,7 @@ struct BatchLinear : BatchTrees {
             const vec w0 = masses_of(lane, atom_of(s));
             w[s] = w0;
             for (int32_t p = f.step[s].first, end = p + f.step[s].children; p < end; ++p) {
-                fetch_all(f.lower, p, f.n_places);
+                fetch_all(f.lower, p, f.n_bond_rows);
                 const BatchAtom<packed> lower(at, lower_of(p));
                 vec3 d = lower.read(positions) - r0, unused = {};
                 take_image<false>(box, d, unused);
@@ -106,7 +106,7 @@ struct BatchLinear : BatchTrees {
                 to.t = b;
                 lower_w[p] = w1;
             }
-            if (rated && s == f.n_steps - 1) velocity[f.n_places] = v0;
+            if (rated && s == f.n_steps - 1) velocity[f.n_bond_rows] = v0;
         }
     }
     void load(const Range &range) {
@@ -117,10 +117,10 @@ struct BatchLinear : BatchTrees {
             at.layout != elements, has(squares), has(pulls), has(rates));
     }
 
-    vec given_value(int32_t place) const {
+    vec given_value(int32_t p) const {
         vec b = {};
         for (int i = 0; i < W; ++i)
-            if (f.held[place] >> i & 1) b[i] = 0.5 * in.rhs[bond_of(i, place)];
+            if (f.held[p] >> i & 1) b[i] = 0.5 * in.rhs[bond_of(i, p)];
         return b;
     }
 
@@ -144,14 +144,14 @@ struct BatchLinear : BatchTrees {
 
     __attribute__((noinline)) void add_pulls_to_velocities(const Range &range) {
         for (int32_t p = range.row; p < range.end_row + (range.root ? 1 : 0); ++p) {
-            const vec mass = p < f.n_places ? lower_w[p] : w[f.n_steps - 1];
+            const vec mass = p < f.n_bond_rows ? lower_w[p] : w[f.n_steps - 1];
             velocity[p] = add_times(velocity[p], mass, pull[p]);
         }
     }
     // d . (v_j - v_i) into t of the rows.
     __attribute__((noinline)) void find_rates(const Range &range) {
         for (int32_t s = range.step; s < range.end_step; ++s) {
-            const vec3 v0 = AtPlaces<vec3>(velocity, above_of(s)).get3(0);
+            const vec3 v0 = AtRows<vec3>(velocity, above_of(s)).get3(0);
             for (int32_t p = f.step[s].first, end = p + f.step[s].children; p < end; ++p) {
                 row[p].t = dot(row[p].d, velocity[p] - v0);
                 if (in.strain) row[p].t = row[p].t + stretching(in.strain, row[p].d);
@@ -160,25 +160,25 @@ struct BatchLinear : BatchTrees {
     }
 
     __attribute__((noinline)) void write_pulls(const Range &range, const AtomArray &g, bool add, unsigned which) const {
-        write_atoms(range, g, which, [&](int32_t place, const auto &atom) HOL_FORCED {
-            return add ? add_times(atom.read(g), splat(1), pull[place]) : pull[place];
+        write_atoms(range, g, which, [&](int32_t p, const auto &atom) HOL_FORCED {
+            return add ? add_times(atom.read(g), splat(1), pull[p]) : pull[p];
         });
     }
     __attribute__((noinline)) void write_velocities(const Range &range, const AtomArray &v, unsigned which) const {
-        write_atoms(range, v, which, [&](int32_t place, const auto &) HOL_FORCED { return velocity[place]; });
+        write_atoms(range, v, which, [&](int32_t p, const auto &) HOL_FORCED { return velocity[p]; });
     }
     // Writes factor t of the bonds, zeros as +0. with_length: |d| is the factor.
     template <bool with_length>
     __attribute__((noinline)) void write_bonds(const Range &range, double factor, double *out, unsigned which) const {
         for_held(range, which, [&](int32_t p, unsigned lanes) HOL_FORCED {
-            if (f.n_tiles >= pieces_of_cache && p + rows_ahead / W < f.n_places)
+            if (f.n_tiles >= pieces_of_cache && p + rows_ahead / W < f.n_bond_rows)
                 for (int i = 0; i < W; ++i) __builtin_prefetch(out + bond_of(i, p + rows_ahead / W), 1, 2);
             write_values(p, lanes, mul_add(row[p].t, with_length ? sqrt(row[p].q) : splat(factor), vec{}), out);
         });
     }
     __attribute__((noinline)) void add_virial(unsigned which, Tally &tally) const {
         graph::add_virial<vec>(
-            0, f.n_places, [&](int32_t p) HOL_FORCED { return row[p].d; },
+            0, f.n_bond_rows, [&](int32_t p) HOL_FORCED { return row[p].d; },
             [&](int32_t p) HOL_FORCED { return row[p].t; }, 1, which, tally);
     }
 };

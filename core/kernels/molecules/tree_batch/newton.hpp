@@ -12,9 +12,9 @@ namespace holonomic::HOL_ISA::graph {
 typedef NewtonRow<vec> BatchRow;
 
 struct BatchNewton : BatchTrees {
-    BatchRow *row;       // [n_rows] by place
-    vec3 *new_D, *pull;  // [n_rows] of the bond, and on its lower atom; at n_places, on the root
-    vec *w, *lower_w;    // [n_steps], [n_places + 1]
+    BatchRow *row;       // [n_rows]
+    vec3 *new_D, *pull;  // [n_rows] of the bond, and on its lower atom; at n_bond_rows, on the root
+    vec *w, *lower_w;    // [n_steps], [n_bond_rows + 1]
     vec *lower, *upper;  // [n_pairs]
     vec *kept;           // factors, while new ones are made for some lanes
     Memory<vec> working;
@@ -42,7 +42,7 @@ struct BatchNewton : BatchTrees {
         kept = memory.values(3 * rows + 2 * f.n_pairs);
         working = memory;
         memory.values((1 + f.n_tiles) * joint_values(f));
-        for (int64_t p = f.n_places; p < rows; ++p) {
+        for (int64_t p = f.n_bond_rows; p < rows; ++p) {
             row[p] = BatchRow{};
             new_D[p] = pull[p] = vec3{};
         }
@@ -61,7 +61,7 @@ struct BatchNewton : BatchTrees {
             w[s] = masses_of(lane, atom_of(s));
             look_at(r);
             for (int32_t p = f.step[s].first, end = p + f.step[s].children; p < end; ++p) {
-                fetch<packed, true>(f.lower, p, f.n_places, call.r_ref, call.r);
+                fetch<packed, true>(f.lower, p, f.n_bond_rows, call.r_ref, call.r);
                 const BatchAtom<packed> below(at, lower_of(p));
                 const vec3 r1 = below.read(call.r);
                 vec3 unused = {};
@@ -74,7 +74,7 @@ struct BatchNewton : BatchTrees {
                 row[p].tau = vec{};
             }
         }
-        if (range.root) lower_w[f.n_places] = w[f.n_steps - 1];
+        if (range.root) lower_w[f.n_bond_rows] = w[f.n_steps - 1];
         return largest;
     }
     // a^2 of all bonds: 0 where there is none.
@@ -111,12 +111,12 @@ struct BatchNewton : BatchTrees {
         make_factors(all(), working);
     }
     void forget(mask which) {
-        for (int32_t p = 0; p < f.n_places; ++p) row[p].tau = select(which, vec{}, row[p].tau);
+        for (int32_t p = 0; p < f.n_bond_rows; ++p) row[p].tau = select(which, vec{}, row[p].tau);
         pulled = false;
     }
     void factorize(mask which) {
         Errors unused = {};
-        for (int32_t p = 0; p < f.n_places; ++p) {
+        for (int32_t p = 0; p < f.n_bond_rows; ++p) {
             BatchRow &bond = row[p];
             const vec stretch = bond.stretch, t = bond.t;
             TreeNewton<vec>::measure<true>(bond, new_D[p], unused);
@@ -132,7 +132,7 @@ struct BatchNewton : BatchTrees {
     }
     template <class Body>
     HOL_FORCED void for_factors(const Body &body) const {
-        for (int32_t p = 0; p < f.n_places; ++p) {
+        for (int32_t p = 0; p < f.n_bond_rows; ++p) {
             body(row[p].r);
             body(row[p].up);
             body(row[p].down);
@@ -158,12 +158,12 @@ struct BatchNewton : BatchTrees {
         pulled = true;
         return move_bonds(all());
     }
-    // The displacement of the lower atom of a place, or of the root.
-    HOL_FORCED vec3 displacement(int32_t place) const { return add_times(vec3{}, lower_w[place], pull[place]); }
+    // The displacement of the lower atom of a row, or of the root.
+    HOL_FORCED vec3 displacement(int32_t p) const { return add_times(vec3{}, lower_w[p], pull[p]); }
     __attribute__((noinline)) vec move_bonds(const Range &range) {
         Errors errors = {};
         for (int32_t s = range.step; s < range.end_step; ++s) {
-            const vec3 above = AtPlaces<vec3>(pull, above_of(s)).get3(0);
+            const vec3 above = AtRows<vec3>(pull, above_of(s)).get3(0);
             for (int32_t p = f.step[s].first, end = p + f.step[s].children; p < end; ++p) {
                 vec3 turned = difference(lower_w[p], pull[p], w[s], above);
                 if (f.held[p] != all_lanes) {
@@ -176,16 +176,16 @@ struct BatchNewton : BatchTrees {
         }
         return errors.largest();
     }
-    // |D.D - a^2| / a^2 of the bonds at a place.
+    // |D.D - a^2| / a^2 of the bonds of a row.
     vec left_of(int32_t p) const { return abs(excess(new_D[p], row[p].a2)) * row[p].per_a2; }
 };
 
-// The bonds of an atom in each lane, as NewtonAtom has them: those to its children at the places of a step, and a copy
+// The bonds of an atom in each lane, as NewtonAtom has them: those to its children at the rows of a step, and a copy
 // of the one above.
 struct BatchNewtonJoint {
     const BatchNewton &x;
     const int32_t step;
-    const AtPlaces<BatchRow> place;
+    const AtRows<BatchRow> row_above;
     BatchRow *const child;
     const vec3 *const child_D;
     const int64_t first;
@@ -194,7 +194,7 @@ struct BatchNewtonJoint {
     vec3 top_D;
 
     HOL_FORCED BatchNewtonJoint(const BatchNewton &z, int32_t s, Memory<vec> m)
-        : x(z), step(s), place(z.row, z.above_of(s)), child(z.row + z.f.step[s].first),
+        : x(z), step(s), row_above(z.row, z.above_of(s)), child(z.row + z.f.step[s].first),
           child_D(z.new_D + z.f.step[s].first), first(z.f.step[s].pairs), memory(m) {}
     HOL_FORCED vec w() const { return x.w[step]; }
     HOL_FORCED BatchRow &bond(int a) const { return child[a]; }
@@ -204,7 +204,7 @@ struct BatchNewtonJoint {
     HOL_FORCED vec *lower() const { return x.lower + first; }
     HOL_FORCED vec *upper() const { return x.upper + first; }
     HOL_FORCED Memory<vec> working() const { return memory; }
-    HOL_FORCED void read_t() const { top.t = place.get(offsetof(BatchRow, t)); }
+    HOL_FORCED void read_t() const { top.t = row_above.get(offsetof(BatchRow, t)); }
 };
 
 inline __attribute__((noinline)) void BatchNewton::begin_factors(const Range &range) {
@@ -217,10 +217,10 @@ inline __attribute__((noinline)) void BatchNewton::make_factors(const Range &ran
         const int k = f.step[s].children;
         choose_few<3>(k, [&](auto known) HOL_FORCED {
             BatchNewtonJoint joint(*this, s, memory);
-            joint.top.b = joint.place.get3(offsetof(BatchRow, b));
-            joint.top_D = AtPlaces<vec3>(new_D, above_of(s)).get3(0);
+            joint.top.b = joint.row_above.get3(offsetof(BatchRow, b));
+            joint.top_D = AtRows<vec3>(new_D, above_of(s)).get3(0);
             factorize_joint<known, false, vec>(joint, k);
-            joint.place.put(offsetof(BatchRow, r), joint.top.r);
+            joint.row_above.put(offsetof(BatchRow, r), joint.top.r);
         });
     }
     if (range.root) factorize_joint<1, true, vec>(BatchNewtonJoint(*this, f.n_steps - 1, memory), 1);
@@ -233,7 +233,7 @@ inline __attribute__((noinline)) void BatchNewton::substitute(const Range &range
             const BatchNewtonJoint joint(*this, s, memory);
             joint.read_t();
             substitute_newton_joint<known, false, vec>(joint, k);
-            joint.place.put(offsetof(BatchRow, t), joint.top.t);
+            joint.row_above.put(offsetof(BatchRow, t), joint.top.t);
         });
     }
     if (range.root) substitute_newton_joint<1, true, vec>(BatchNewtonJoint(*this, f.n_steps - 1, memory), 1);
@@ -243,11 +243,11 @@ inline __attribute__((noinline)) void BatchNewton::substitute(const Range &range
 // at its own step.
 template <bool corrected>
 void BatchNewton::go_down(const Range &range, mask active) {
-    if (range.root) pull[f.n_places].x = pull[f.n_places].y = pull[f.n_places].z = vec{};
+    if (range.root) pull[f.n_bond_rows].x = pull[f.n_bond_rows].y = pull[f.n_bond_rows].z = vec{};
     for (int32_t s = range.end_step; s-- > range.step;) {
-        const vec t_above = AtPlaces<BatchRow>(row, above_of(s)).get(offsetof(BatchRow, t));
+        const vec t_above = AtRows<BatchRow>(row, above_of(s)).get(offsetof(BatchRow, t));
         const bool inner = s < range.inner_end();
-        const AtPlaces<vec3> own(pull, above_of(s));
+        const AtRows<vec3> own(pull, above_of(s));
         vec3 sum = own.get3(0);
         const int32_t first = f.step[s].first;
         for (int32_t p = first + f.step[s].children; p-- > first;) {

@@ -62,7 +62,7 @@ struct BatchPositions : PositionWay<vec> {
     void add_virial(unsigned which) const {
         const BatchRow *const row = newton.row;
         graph::add_virial<vec>(
-            0, newton.f.n_places, [=](int32_t p) HOL_FORCED { return row[p].b; },
+            0, newton.f.n_bond_rows, [=](int32_t p) HOL_FORCED { return row[p].b; },
             [=](int32_t p) HOL_FORCED { return row[p].tau; }, per_dt2(), which, tally);
     }
     void write_moves(unsigned which, unsigned) const { write_moves(newton.all(), which); }

@@ -7,17 +7,17 @@
 
 namespace holonomic::HOL_ISA::graph {
 
-// The bonds of an atom in each lane: those to its children at the places of a step, and a copy of the one above.
+// The bonds of an atom in each lane: those to its children at the rows of a step, and a copy of the one above.
 struct BatchJoint {
     const BatchLinear &x;
     const int32_t step;
-    const AtPlaces<BondRow<vec>> place;
+    const AtRows<BondRow<vec>> row_above;
     BondRow<vec> *const child;
     vec *const pairs;
     mutable BondRow<vec> top;
 
     HOL_FORCED BatchJoint(const BatchLinear &z, int32_t s)
-        : x(z), step(s), place(z.row, z.above_of(s)), child(z.row + z.f.step[s].first),
+        : x(z), step(s), row_above(z.row, z.above_of(s)), child(z.row + z.f.step[s].first),
           pairs(z.pair + z.f.step[s].pairs) {}
     HOL_FORCED vec w() const { return x.w[step]; }
     HOL_FORCED BondRow<vec> &bond(int a) const { return child[a]; }
@@ -65,8 +65,8 @@ struct BatchJoint {
         }
         return g;
     }
-    HOL_FORCED void read_t() const { top.t = place.get(offsetof(BondRow<vec>, t)); }
-    HOL_FORCED void write_t() const { place.put(offsetof(BondRow<vec>, t), top.t); }
+    HOL_FORCED void read_t() const { top.t = row_above.get(offsetof(BondRow<vec>, t)); }
+    HOL_FORCED void write_t() const { row_above.put(offsetof(BondRow<vec>, t), top.t); }
 
     // What flag_cancelling_bonds() does, in the lanes of `which`.
     __attribute__((noinline)) void flag_cancelling(int k, unsigned which, vec &margin) const {
@@ -124,8 +124,8 @@ inline __attribute__((noinline)) vec BatchLinear::up(const Range &range, Memory<
         const int k = f.step[s].children;
         least = choose_few<3>(k, [=](auto known) HOL_FORCED {
             const BatchJoint joint(*this, s);
-            joint.top.d = joint.place.get3(offsetof(BondRow<vec>, d));
-            joint.top.q = joint.place.get(offsetof(BondRow<vec>, q));
+            joint.top.d = joint.row_above.get3(offsetof(BondRow<vec>, d));
+            joint.top.q = joint.row_above.get(offsetof(BondRow<vec>, q));
             joint.read_t();
             typename Flagged::template Values<known> before;
             before.keep(joint);
@@ -133,7 +133,7 @@ inline __attribute__((noinline)) vec BatchLinear::up(const Range &range, Memory<
             up_joint<known, false>(joint, k, memory, own);
             own = flag.end(joint, before, own, least);
             joint.write_t();
-            joint.place.put(offsetof(BondRow<vec>, E), joint.top.E);
+            joint.row_above.put(offsetof(BondRow<vec>, E), joint.top.E);
             return own;
         });
     }
@@ -161,7 +161,7 @@ inline __attribute__((noinline)) void BatchLinear::down(const Range &range, cons
         const int k = known > 0 ? known : f.step[s].children;
         const BatchJoint joint(*this, s);
         if (!top) joint.read_t();
-        const AtPlaces<vec3> own(pull, above_of(s));
+        const AtRows<vec3> own(pull, above_of(s));
         vec3 sum = top ? vec3{} : own.get3(0);
         HOL_UNROLL_FEW
         for (int a = k - 1; a >= 0; --a) {
@@ -172,9 +172,9 @@ inline __attribute__((noinline)) void BatchLinear::down(const Range &range, cons
         }
         own.put3(0, sum);
         if (!look || known == 1) return;
-        joint.top.q = joint.place.get(offsetof(BondRow<vec>, q));
-        joint.top.E = joint.place.get(offsetof(BondRow<vec>, E));
-        joint.top.r = joint.place.get(offsetof(BondRow<vec>, r));
+        joint.top.q = joint.row_above.get(offsetof(BondRow<vec>, q));
+        joint.top.E = joint.row_above.get(offsetof(BondRow<vec>, E));
+        joint.top.r = joint.row_above.get(offsetof(BondRow<vec>, r));
         const unsigned cancelling = bits(cancelling_bonds<vec>(joint, k)) & f.held[f.step[s].first + 1];
         if (__builtin_expect(cancelling != 0, 0)) flag.note_cancelling(joint, k, cancelling);
     };
