@@ -165,16 +165,16 @@ const char kernel_begin[] = R"(
 #if ROOM > 0
     LOCAL mixed own[ROOM];
 #endif
-    for (int slot = GROUP_ID; slot < integers[FIRST + 1]; slot += NUM_GROUPS) {
-        GLOBAL const int* RESTRICT of_slot = integers + integers[FIRST] + 3*slot;
-        GLOBAL const int* RESTRICT table = integers + of_slot[0];
-        GLOBAL const int* RESTRICT row = integers + of_slot[1];
+    for (int molecule = GROUP_ID; molecule < integers[FIRST + 1]; molecule += NUM_GROUPS) {
+        GLOBAL const int* RESTRICT of_molecule = integers + integers[FIRST] + 3*molecule;
+        GLOBAL const int* RESTRICT table = integers + of_molecule[0];
+        GLOBAL const int* RESTRICT row = integers + of_molecule[1];
         GLOBAL const int* RESTRICT atom = row + 1;
         GLOBAL const mixed* RESTRICT w = numbers + row[0];
 #if ROOM > 0
         LOCAL_ARG mixed* u = own;
 #else
-        GLOBAL mixed* u = scratch + of_slot[2];
+        GLOBAL mixed* u = scratch + of_molecule[2];
 #endif
         SCRATCH_ARG mixed* s = u + 3*N_ATOMS;
         SCRATCH_ARG real* d = (SCRATCH_ARG real*) (s + 3*N_BONDS);

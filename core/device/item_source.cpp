@@ -9,11 +9,11 @@ namespace holonomic::device {
 
 namespace {
 
-// A loop over slots: a program may start fewer work-items than there are.
+// A loop over lanes: a program may start fewer work-items than there are.
 const char kernel_begin[] = R"(
-    for (int slot = GLOBAL_ID; slot < integers[FIRST + 1]; slot += GLOBAL_SIZE) {
-        GLOBAL const int* RESTRICT batch = integers + integers[FIRST] + 2*(slot / HOL_WIDTH);
-        GLOBAL const int* RESTRICT atoms = integers + batch[1] + slot % HOL_WIDTH;
+    for (int lane = GLOBAL_ID; lane < integers[FIRST + 1]; lane += GLOBAL_SIZE) {
+        GLOBAL const int* RESTRICT batch = integers + integers[FIRST] + 2*(lane / HOL_WIDTH);
+        GLOBAL const int* RESTRICT atoms = integers + batch[1] + lane % HOL_WIDTH;
         if (atoms[0] < 0)
             continue;
         GLOBAL const mixed* RESTRICT w = numbers + atoms[0];

@@ -90,7 +90,7 @@ std::int32_t KernelPlanner::next() const {
     return static_cast<std::int32_t>(plan_.integers.size());
 }
 
-// Of the launch that is made: where its data begin, and how many slots there are.
+// Of the launch that is made: where its data begin, and how many lanes or molecules there are.
 std::int32_t KernelPlanner::header(std::int64_t count) {
     const std::int32_t begin = next();
     std::int32_t *const of_launch = &plan_.integers[2 * plan_.launches.size()];
@@ -161,8 +161,8 @@ void KernelPlanner::launch_groups(int first, int last, bool in_local_memory) {
         n_molecules += static_cast<std::int64_t>(sorted_.kinds[at(k)].members.size());
         largest = std::max(largest, room(sorted_.kinds[at(k)].kind));
     }
-    std::size_t slot = at(header(n_molecules));
-    plan_.integers.resize(slot + at(3 * n_molecules));
+    std::size_t to = at(header(n_molecules));
+    plan_.integers.resize(to + at(3 * n_molecules));
     for (int k = first; k < last; ++k) {
         const auto &[kind, members] = sorted_.kinds[at(k)];
         const std::int32_t table = next();
@@ -170,9 +170,9 @@ void KernelPlanner::launch_groups(int first, int last, bool in_local_memory) {
         plan_.integers.insert(plan_.integers.end(), of_kind.begin(), of_kind.end());
         for (const Member &member : members) {
             const std::int32_t row = next();
-            plan_.integers[slot++] = table;
-            plan_.integers[slot++] = row;
-            plan_.integers[slot++] = static_cast<std::int32_t>(scratch_);
+            plan_.integers[to++] = table;
+            plan_.integers[to++] = row;
+            plan_.integers[to++] = static_cast<std::int32_t>(scratch_);
             if (!in_local_memory) scratch_ += room(kind);
             plan_.integers.push_back(numbers_of(member));
             plan_.integers.insert(plan_.integers.end(), member.atoms.begin(), member.atoms.end());

@@ -17,7 +17,7 @@ std::string prologue(Precision precision);
 constexpr int batch_width = 64;
 
 // Kernels of a launch by its number: hol_positions_N and hol_velocities_N. All read where their data begin in
-// `integers`, and how many slots there are, from its first numbers: two for each launch.
+// `integers`, and how many lanes or molecules there are, from its first numbers: two for each launch.
 
 // Of molecules that a work-item solves each, of the kinds from number first to number last - 1. Data:
 //     batches    of batch_width molecules of one kind: the kind, and where its columns begin
@@ -27,7 +27,7 @@ std::string item_kernels(int launch, const std::vector<Sorted::OfKind> &kinds, i
 
 // Of molecules that a work-group solves each, of any kind, by its table. room: numbers in local memory; 0: each has its
 // room in `scratch`. Data:
-//     slots      of each molecule: where its table, its row, and its room in `scratch` begin
+//     molecules  of each, where its table, its row, and its room in `scratch` begin
 //     row        [n_atoms + 2] as a column above
 std::string group_kernels(int launch, int group_size, int room);
 
