@@ -23,6 +23,8 @@ const char kernel_begin[] = R"(
 const char kernel_end[] = "        }\n    }\n}\n";
 
 // The statements that solve a molecule of a kind: all of them have names of their own within a case of the switch.
+// Bonds are eliminated one after the other, and the last two are solved together, by Cramer's rule: one quotient less
+// to wait for, which counts in water and CH3.
 class Writer {
 public:
     explicit Writer(const KernelKind &of) : kind_(of), later_(of.bonds.size()) {
@@ -33,6 +35,7 @@ public:
 
 private:
     int n_bonds() const { return kind_.n_bonds(); }
+    int n_eliminated() const { return n_bonds() < 2 ? n_bonds() : n_bonds() - 2; }
     const std::pair<int, int> &bond(int k) const { return kind_.bonds[at(k)]; }
     std::string m(int row, int column) const {
         if (symmetric_ && row > column) std::swap(row, column);
@@ -40,10 +43,11 @@ private:
     }
     void begin(const char *state);
     void entry(int row, int column);
-    void factorize(bool with_right_side);
+    void factorize();
     void forward(int k);
     void backward();
     void move();
+    void end_pass(const char *is_done);
     void end(const char *store);
 
     const KernelKind &kind_;
@@ -81,8 +85,8 @@ void Writer::entry(int row, int column) {
         out_ << "(real) (" << shared << ")*dot(d" << row << ", h" << column << ");\n";
 }
 
-void Writer::factorize(bool with_right_side) {
-    for (int k = 0; k < n_bonds(); ++k) {
+void Writer::factorize() {
+    for (int k = 0; k < n_eliminated(); ++k) {
         const std::vector<int> &later = later_[at(k)];
         entry(k, k);
         for (const int row : later) {
@@ -97,8 +101,14 @@ void Writer::factorize(bool with_right_side) {
                 if (!symmetric_ || row <= column) out_ << " " << m(row, column) << " -= " << m(row, k) << "*t;";
             out_ << " }\n";
         }
-        if (with_right_side) forward(k);
+        if (!symmetric_) forward(k);
     }
+    const int p = n_eliminated(), q = p + 1;
+    if (q >= n_bonds()) return;
+    for (const int row : {p, q})
+        for (const int column : {p, q}) entry(row, column);
+    out_ << "const real i" << p << " = 1/(" << m(p, p) << "*" << m(q, q) << " - " << m(p, q) << "*" << m(q, p)
+         << ");\n";
 }
 
 void Writer::forward(int k) {
@@ -109,7 +119,12 @@ void Writer::forward(int k) {
 }
 
 void Writer::backward() {
-    for (int k = n_bonds() - 1; k >= 0; --k) {
+    const int p = n_eliminated(), q = p + 1;
+    if (q < n_bonds())
+        out_ << "{ const real t = i" << p << "*(" << m(q, q) << "*g" << p << " - " << m(p, q) << "*g" << q << "); g"
+             << q << " = i" << p << "*(" << m(p, p) << "*g" << q << " - " << m(q, p) << "*g" << p << "); g" << p
+             << " = t; }\n";
+    for (int k = n_eliminated() - 1; k >= 0; --k) {
         out_ << "g" << k << " = i" << k << "*(g" << k;
         for (const int column : later_[at(k)]) out_ << " - " << m(k, column) << "*g" << column;
         out_ << ");\n";
@@ -122,6 +137,8 @@ void Writer::move() {
              << "*p; u" << bond(k).second << " -= w" << bond(k).second << "*p; }\n";
 }
 
+void Writer::end_pass(const char *is_done) { out_ << "if (" << is_done << ") {\nsolved = 1;\nbreak;\n}\n}\n"; }
+
 void Writer::end(const char *store) {
     out_ << "if (solved) {\n";
     for (int i = 0; i < kind_.n_atoms; ++i) out_ << store << "(a" << i << ", t" << i << ", u" << i << ");\n";
@@ -129,7 +146,8 @@ void Writer::end(const char *store) {
 }
 
 // Newton's iteration for the multipliers of the bonds s before the step. What is to vanish is (1 - d.d/a^2) / 2. It
-// ends at the rounding, or near it where a step gains nothing more.
+// ends at the rounding, or near it where a step gains nothing more; without a look where the multipliers are no larger
+// than the errors: then the matrix is far from singular.
 std::string Writer::positions() {
     symmetric_ = false;
     begin("HOL_DISPLACEMENT");
@@ -141,11 +159,14 @@ std::string Writer::positions() {
              << bond(k).second << "); const mixed e = 0.5f - 0.5f*c" << k << "*dot(d, d); error += e*e; g" << k
              << " = (real) e; d" << k << " = HOL_ROUNDED(c" << k << "*d); }\n";
     out_ << "if (error <= rounding || (error <= 1000*rounding && 4*error >= before && pass > 0)) {\n"
-         << "solved = 1;\nbreak;\n}\nbefore = error;\n";
-    factorize(true);
+         << "solved = 1;\nbreak;\n}\nconst int last = HOL_NEXT_IS_LAST(rounding);\nbefore = error;\n";
+    factorize();
     backward();
+    out_ << "const real moved = ";
+    for (int k = 0; k < n_bonds(); ++k) out_ << (k == 0 ? "g" : " + g") << k << "*g" << k;
+    out_ << ";\n";
     move();
-    out_ << "}\n";
+    end_pass("last && moved <= 1000*(real) error");
     end("HOL_DISPLACE");
     return out_.str();
 }
@@ -155,7 +176,7 @@ std::string Writer::velocities() {
     symmetric_ = true;
     begin("HOL_VELOCITY");
     for (int k = 0; k < n_bonds(); ++k) out_ << "const real3 d" << k << " = h" << k << ";\n";
-    factorize(false);
+    factorize();
     out_ << "mixed rounding = 0, before = 0;\n"
          << "for (int pass = 0; pass < HOL_MOST_PASSES; ++pass) {\nmixed error = 0;\n";
     for (int k = 0; k < n_bonds(); ++k)
@@ -167,11 +188,11 @@ std::string Writer::velocities() {
             out_ << "rounding += dot(s" << k << ", s" << k << ")*dot(u" << atom << ", u" << atom << ");\n";
     out_ << "rounding *= HOL_ROUNDING*HOL_ROUNDING;\n}\n"
          << "if (error <= rounding/16 || (error <= 1000*rounding && 4*error >= before && pass > 0)) {\n"
-         << "solved = 1;\nbreak;\n}\nbefore = error;\n";
-    for (int k = 0; k < n_bonds(); ++k) forward(k);
+         << "solved = 1;\nbreak;\n}\nconst int last = HOL_NEXT_IS_LAST(rounding/16);\nbefore = error;\n";
+    for (int k = 0; k < n_eliminated(); ++k) forward(k);
     backward();
     move();
-    out_ << "}\n";
+    end_pass("last");
     end("HOL_SET_VELOCITY");
     return out_.str();
 }

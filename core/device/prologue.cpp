@@ -118,12 +118,15 @@ DEVICE void hol_add(GLOBAL mixed* to, int a, mixed3 v) { to[3*a] += v.x; to[3*a+
 )";
 
 // `failures` keeps for each molecule the call that it failed in first; nothing depends on which work-item comes first.
+// Errors are squares, of what is left `before` a step and after it. Nobody needs to look at what the next step leaves
+// if this one has left 3e-6 of it, and 3e4 roundings at the most: the rate of an iteration does not grow.
 const char common[] = R"(
 #define HOL_PLAN GLOBAL const int* RESTRICT integers, GLOBAL const mixed* RESTRICT numbers, \
     GLOBAL mixed* RESTRICT scratch, GLOBAL int* RESTRICT failures, int call
 #define HOL_FAILED(molecule) if (failures[1 + (molecule)] == 0) { failures[1 + (molecule)] = call; failures[0] = 1; }
 #define HOL_ROUNDED(v) make_real3((real) (v).x, (real) (v).y, (real) (v).z)
 #define HOL_MOST_PASSES 25
+#define HOL_NEXT_IS_LAST(limit) (1e11f*error <= before && error <= 1e9f*(limit))
 )";
 
 const char *name(Precision precision) {
