@@ -17,7 +17,7 @@ from openmm import unit
 
 from holonomic_openmm import add_holonomic, load
 from test_openmm import system_of
-from test_scenes import INTEGRATORS, charged, positions, velocities, worst
+from test_scenes import INTEGRATORS, charged, energies, positions, velocities, worst
 
 # And the error of bonds: they end at coordinates of at most 1 nm, half a unit of the last place off, and the shortest is of 0.06 nm.
 PRECISIONS = {"double": 1e-14, "mixed": 1e-13, "single": 4e-6}
@@ -173,15 +173,6 @@ def context_of(system, integrator, precision, r, v=None):
         context.applyVelocityConstraints(1e-3)
     context.computeVirtualSites()
     return context
-
-
-def energies(context, samples, steps):
-    found = []
-    for _ in range(samples):
-        context.getIntegrator().step(steps)
-        state = context.getState(getEnergy=True)
-        found.append((state.getKineticEnergy() + state.getPotentialEnergy())._value)
-    return np.array(found)
 
 
 class Steps(unittest.TestCase):

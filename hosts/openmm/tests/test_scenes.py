@@ -1,5 +1,6 @@
 """Scenes of OpenMM's own tests of constraints: chains, clusters, massless particles, virtual sites, minimisation, Drude particles."""
 
+import itertools
 import math
 import unittest
 
@@ -11,7 +12,7 @@ from holonomic_openmm import add_holonomic
 
 mm.Platform.loadPluginsFromDirectory(mm.Platform.getDefaultPluginsDirectory())
 NAMES = [mm.Platform.getPlatform(i).getName() for i in range(mm.Platform.getNumPlatforms())]
-PLATFORMS = [name for name in ("Reference", "CPU") if name in NAMES]
+PLATFORMS = [name for name in ("Reference", "CPU") if name in NAMES]  # test_scenes_opencl.py has others: "OpenCL mixed"
 ROOT2 = math.sqrt(2)
 
 
@@ -69,12 +70,47 @@ def cluster():
     return system, constraints, r
 
 
+def waters():
+    """27 rigid waters on weak springs."""
+    system = charged([16.0, 1.0, 1.0] * 27, [-0.834, 0.417, 0.417] * 27)
+    force, spring = system.getForce(0), mm.CustomExternalForce("20*(x*x+y*y+z*z)")
+    water = np.array([(0, 0, 0), (0.09572, 0, 0), (-0.0239987, 0.0926627, 0)])
+    rng, constraints, r = np.random.default_rng(6), [], []
+    for first in range(0, 81, 3):
+        force.setParticleParameters(first, -0.834, 0.315, 0.636)
+        for other in (1, 2):
+            force.setParticleParameters(first + other, 0.417, 1, 0)
+        for i, j, length in (0, 1, 0.09572), (0, 2, 0.09572), (1, 2, 0.15139):
+            force.addException(first + i, first + j, 0, 1, 0)
+            constraints.append((first + i, first + j, length))
+        spring.addParticle(first, [])
+        place = np.array([first // 27, first // 9 % 3, first // 3 % 3]) * 0.31
+        r += list(place + water @ np.linalg.qr(rng.normal(size=(3, 3)))[0])
+    system.addForce(spring)
+    return system, constraints, np.array(r)
+
+
+def energies(context, samples, steps):
+    found = []
+    for _ in range(samples):
+        context.getIntegrator().step(steps)
+        state = context.getState(getEnergy=True)
+        found.append((state.getKineticEnergy() + state.getPotentialEnergy())._value)
+    return np.array(found)
+
+
+def rounding(platform):
+    """Bound of an error of bonds of 1 nm between coordinates of some nanometers."""
+    return 4e-6 if platform == "OpenCL single" else 1e-13
+
+
 def context_of(system, constraints, r, integrator, platform, velocities=None, holonomic=True):
     for i, j, length in constraints:
         system.addConstraint(i, j, length)
     if holonomic:
         add_holonomic(system)
-    context = mm.Context(system, integrator, mm.Platform.getPlatformByName(platform))
+    name, *precision = platform.split()
+    context = mm.Context(system, integrator, mm.Platform.getPlatformByName(name), {"Precision": word for word in precision})
     context.setPositions(r)
     if velocities is not None:
         context.setVelocities(velocities)
@@ -120,20 +156,44 @@ class Scenes(unittest.TestCase):
                         context = context_of(system, constraints, r, integrator(), platform, start)
                         for _ in range(10):
                             context.getIntegrator().step(20)
-                            self.assertLess(worst(positions(context), constraints), 1e-13)
+                            self.assertLess(worst(positions(context), constraints), rounding(platform))
                         self.assertGreater(np.abs(positions(context) - r).max(), 1e-3)
 
     def test_energy_of_chains_and_clusters(self):
-        for make in (chain, cluster):
-            system, constraints, r = make()
-            start = np.random.default_rng(1).uniform(-0.5, 0.5, r.shape)
-            context = context_of(system, constraints, r, mm.VerletIntegrator(0.001), "Reference", start)
-            energies = []
-            for _ in range(50):
-                context.getIntegrator().step(20)
-                state = context.getState(getEnergy=True)
-                energies.append((state.getKineticEnergy() + state.getPotentialEnergy())._value)
-            self.assertLess(np.ptp(energies), 0.01)
+        for platform in PLATFORMS:
+            for make in (chain, cluster):
+                with self.subTest(platform=platform, scene=make.__name__):
+                    system, constraints, r = make()
+                    start = np.random.default_rng(1).uniform(-0.5, 0.5, r.shape)
+                    context = context_of(system, constraints, r, mm.VerletIntegrator(0.001), platform, start)
+                    self.assertLess(np.ptp(energies(context, 50, 20)), 0.01)
+
+    def test_energy_of_waters_does_not_drift(self):
+        for platform in PLATFORMS:
+            with self.subTest(platform=platform):
+                system, constraints, r = waters()
+                context = context_of(system, constraints, r, mm.VerletIntegrator(0.001), platform, np.zeros(r.shape))
+                context.setVelocitiesToTemperature(300, 3)
+                found = energies(context, 100, 40)
+                slope, at_first = np.polyfit(range(100), found, 1)
+                # In kJ/mol; on the platform CPU 0.08 and 0.07, by the length of the step.
+                self.assertLess(abs(100 * slope), 0.16)
+                self.assertLess(np.std(found - slope * np.arange(100) - at_first), 0.14)
+
+    def test_temperature_of_waters(self):
+        for platform in PLATFORMS:
+            with self.subTest(platform=platform):
+                system, constraints, r = waters()
+                integrator = mm.LangevinMiddleIntegrator(300, 20, 0.002)
+                integrator.setRandomNumberSeed(4)
+                context = context_of(system, constraints, r, integrator, platform)
+                integrator.step(500)
+                kinetic = []
+                for _ in range(300):
+                    integrator.step(10)
+                    kinetic.append(context.getState(getEnergy=True).getKineticEnergy()._value)
+                # Six freedoms a water; 300 samples, of which half count, scatter by 0.11 each.
+                self.assertAlmostEqual(np.mean(kinetic) / (27 * 3 * 0.0083144626 * 300), 1, delta=0.05)
 
     def test_velocities_on_the_constraints(self):
         for platform in PLATFORMS:
@@ -144,7 +204,7 @@ class Scenes(unittest.TestCase):
                 context.getIntegrator().step(50)
                 r, v = positions(context), velocities(context)
                 for i, j, length in constraints:
-                    self.assertLess(abs((r[i] - r[j]) @ (v[i] - v[j])), 1e-13)
+                    self.assertLess(abs((r[i] - r[j]) @ (v[i] - v[j])), rounding(platform))
 
     def test_a_constraint_of_a_massless_particle_with_one_that_has_mass_is_refused(self):
         for platform in PLATFORMS:
@@ -170,6 +230,8 @@ class Scenes(unittest.TestCase):
     def test_massless_pairs_beside_molecules(self):
         for platform in PLATFORMS:
             for name, integrator in INTEGRATORS.items():
+                if name.startswith("variable") and platform.startswith("OpenCL"):
+                    continue  # with OpenMM's own constraints, too, the first step is infinite there
                 with self.subTest(platform=platform, integrator=name):
                     system = charged([0.0, 0.0, 2.0, 3.0], [0.2, -0.2, 0.1, -0.1])
                     r = np.array([(-2.0, 0, 0), (2.0, 0, 0), (0, 0, 0), (0, 1.0, 0)])
@@ -178,7 +240,7 @@ class Scenes(unittest.TestCase):
                     context = context_of(system, [(0, 1, 1.5), (2, 3, 1.0)], r, integrator(), platform, start)
                     context.getIntegrator().step(100)
                     np.testing.assert_array_equal(positions(context)[:2], r[:2])
-                    self.assertLess(worst(positions(context), [(2, 3, 1.0)]), 1e-13)
+                    self.assertLess(worst(positions(context), [(2, 3, 1.0)]), rounding(platform))
                     self.assertGreater(np.abs(positions(context)[2:] - r[2:]).max(), 1e-4)
 
     def test_virtual_sites(self):
@@ -200,9 +262,9 @@ class Scenes(unittest.TestCase):
                     context.computeVirtualSites()
                     context.getIntegrator().step(100)
                     now = positions(context)
-                    self.assertLess(worst(now, constraints), 1e-13)
+                    self.assertLess(worst(now, constraints), rounding(platform))
                     site = 0.786646558 * now[0] + 0.106676721 * (now[1] + now[2])
-                    np.testing.assert_allclose(now[3], site, atol=1e-12)
+                    np.testing.assert_allclose(now[3], site, atol=10 * rounding(platform))
 
     def test_minimisation(self):
         for platform in PLATFORMS:
@@ -214,7 +276,7 @@ class Scenes(unittest.TestCase):
                     mm.LocalEnergyMinimizer.minimize(context, 0.1)
                     self.assertLess(energy(context), before - 1e-3)
                     self.assertLess(free_force(context, constraints), 0.5 * slope)
-                    self.assertLess(worst(positions(context), constraints), 1e-13)
+                    self.assertLess(worst(positions(context), constraints), rounding(platform))
                     if platform != "Reference":
                         continue  # forces of float: one more rounding leads to another minimum, with OpenMM's own constraints as well
                     # The minimum of OpenMM's own constraints, up to what the minimiser leaves.
@@ -225,7 +287,8 @@ class Scenes(unittest.TestCase):
 
     @unittest.skipUnless(hasattr(mm, "DrudeForce"), "this OpenMM has no Drude particles")
     def test_drude_water(self):
-        for make in (lambda: mm.DrudeLangevinIntegrator(300, 20, 1, 20, 0.0005), lambda: mm.DrudeSCFIntegrator(0.0005)):
+        makers = lambda: mm.DrudeLangevinIntegrator(300, 20, 1, 20, 0.0005), lambda: mm.DrudeSCFIntegrator(0.0005)
+        for platform, make in itertools.product(PLATFORMS, makers):
             system = mm.System()
             nonbonded, drude = mm.NonbondedForce(), mm.DrudeForce()
             r, constraints = [], []
@@ -246,12 +309,12 @@ class Scenes(unittest.TestCase):
                 r += [at, at, at + (0.09572, 0, 0), at + (-0.023999, 0.092663, 0), at]
             system.addForce(nonbonded)
             system.addForce(drude)
-            context = context_of(system, constraints, np.array(r), make(), "Reference")
+            context = context_of(system, constraints, np.array(r), make(), platform)
             context.applyConstraints(1e-6)
             context.computeVirtualSites()
             context.setVelocitiesToTemperature(300, 1)
             context.getIntegrator().step(100)
-            self.assertLess(worst(positions(context), constraints), 1e-13)
+            self.assertLess(worst(positions(context), constraints), rounding(platform))
             self.assertGreater(np.abs(positions(context) - r).max(), 1e-3)
 
 
