@@ -34,11 +34,12 @@ def load(path=None):
 
 
 def _load_devices(folder):
-    """The plugin for OpenCL, where it was built and what it needs is there."""
-    try:
-        ctypes.CDLL(os.path.join(folder, "libOpenMMHolonomicOpenCL.so")).registerKernelFactories()
-    except OSError:
-        pass  # OpenMM's own refusal, when a Context is made, says what there is
+    """The plugins for devices, where they were built and what they need is there."""
+    for platform in "OpenCL", "CUDA", "HIP":
+        try:
+            ctypes.CDLL(os.path.join(folder, f"libOpenMMHolonomic{platform}.so")).registerKernelFactories()
+        except OSError:
+            pass  # the refusal when a Context is made says what there is
 
 
 def add_holonomic(system, threads=1):

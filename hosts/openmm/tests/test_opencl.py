@@ -1,6 +1,7 @@
 """The platform OpenCL, in three precisions: all molecules in one System, all integrators, and the platform Reference beside it.
 
-Any OpenCL device will do, pocl on a CPU too. Ends with 77, and the reason, where there is none.
+Any OpenCL device will do, pocl on a CPU too. Ends with 77, and the reason, where there is none. HOLONOMIC_OPENMM_DEVICE=CUDA, or HIP, tests
+that platform instead.
 """
 
 import copy
@@ -18,6 +19,8 @@ from openmm import unit
 from holonomic_openmm import add_holonomic, load
 from test_openmm import system_of
 from test_scenes import INTEGRATORS, charged, energies, positions, velocities, worst
+
+DEVICE = os.environ.get("HOLONOMIC_OPENMM_DEVICE", "OpenCL")
 
 # And the error of bonds: they end at coordinates of at most 1 nm, half a unit of the last place off, and the shortest is of 0.06 nm.
 PRECISIONS = {"double": 1e-14, "mixed": 1e-13, "single": 4e-6}
@@ -162,9 +165,9 @@ def box_of_molecules():
 
 
 def context_of(system, integrator, precision, r, v=None):
-    """On OpenCL in a precision; with None on the platform Reference."""
+    """On the device in a precision; with None on the platform Reference."""
     integrator.setConstraintTolerance(0.01)  # not looked at
-    name = "OpenCL" if precision else "Reference"
+    name = DEVICE if precision else "Reference"
     context = mm.Context(system, integrator, mm.Platform.getPlatformByName(name), {"Precision": precision} if precision else {})
     context.setPositions(r)
     context.applyConstraints(1e-3)
@@ -285,7 +288,7 @@ class Contexts(unittest.TestCase):
         system = SCENE.system()
         system.removeForce(1)
         integrator = mm.VerletIntegrator(0.001)
-        context = mm.Context(system, integrator, mm.Platform.getPlatformByName("OpenCL"), {"Precision": "double"})
+        context = mm.Context(system, integrator, mm.Platform.getPlatformByName(DEVICE), {"Precision": "double"})
         context.setPositions(SCENE.r + 1e-3 * np.random.default_rng(25).normal(size=SCENE.r.shape))
         context.applyConstraints(1e-4)
         bonds = [bond for bond in SCENE.moving() if SCENE.masses[bond[0]] == 16]
@@ -455,18 +458,18 @@ def missing():
     """Why there is nothing to test, if there is."""
     mm.Platform.loadPluginsFromDirectory(mm.Platform.getDefaultPluginsDirectory())
     try:
-        platform = mm.Platform.getPlatformByName("OpenCL")
+        platform = mm.Platform.getPlatformByName(DEVICE)
     except mm.OpenMMException:
-        return "OpenMM has no platform OpenCL here (Debian: libopenmm-plugins and pocl-opencl-icd)"
+        return f"OpenMM has no platform {DEVICE} here (Debian, for OpenCL: libopenmm-plugins and pocl-opencl-icd)"
     system = mm.System()
     system.addParticle(1)
     try:
         mm.Context(system, mm.VerletIntegrator(0.001), platform)
     except mm.OpenMMException as error:
-        return f"no OpenCL device ({error}; Debian: pocl-opencl-icd)"
+        return f"no device ({error}; Debian, for OpenCL: pocl-opencl-icd)"
     load()
-    if not os.path.exists(os.path.join(os.path.dirname(os.environ["HOLONOMIC_OPENMM_PLUGIN"]), "libOpenMMHolonomicOpenCL.so")):
-        return "the plugin was built without OpenCL"
+    if not os.path.exists(os.path.join(os.path.dirname(os.environ["HOLONOMIC_OPENMM_PLUGIN"]), f"libOpenMMHolonomic{DEVICE}.so")):
+        return f"the plugin was built without {DEVICE}"
     return None
 
 

@@ -101,7 +101,7 @@ def energies(context, samples, steps):
 
 def rounding(platform):
     """Bound of an error of bonds of 1 nm between coordinates of some nanometers."""
-    return 4e-6 if platform == "OpenCL single" else 1e-13
+    return 4e-6 if platform.endswith("single") else 1e-13
 
 
 def context_of(system, constraints, r, integrator, platform, velocities=None, holonomic=True):
@@ -230,7 +230,7 @@ class Scenes(unittest.TestCase):
     def test_massless_pairs_beside_molecules(self):
         for platform in PLATFORMS:
             for name, integrator in INTEGRATORS.items():
-                if name.startswith("variable") and platform.startswith("OpenCL"):
+                if name.startswith("variable") and platform not in ("Reference", "CPU"):
                     continue  # with OpenMM's own constraints, too, the first step is infinite there
                 with self.subTest(platform=platform, integrator=name):
                     system = charged([0.0, 0.0, 2.0, 3.0], [0.2, -0.2, 0.1, -0.1])

@@ -4,10 +4,10 @@ import sys
 import unittest
 
 import test_scenes
-from test_opencl import PRECISIONS, missing
+from test_opencl import DEVICE, PRECISIONS, missing
 from test_scenes import Scenes  # noqa: F401: what is run
 
-test_scenes.PLATFORMS = [f"OpenCL {precision}" for precision in PRECISIONS]
+test_scenes.PLATFORMS = [f"{DEVICE} {precision}" for precision in PRECISIONS]
 
 if __name__ == "__main__":
     reason = missing()

@@ -1,4 +1,6 @@
-// The plugin of the platform OpenCL: registers what HolonomicConstraints asks for when a Context is made.
+// The plugin of a platform that keeps its coordinates on a device, OpenCL, CUDA or HIP: registers what
+// HolonomicConstraints asks for when a Context is made. Which platform it is, cmake says: its name, its class, its
+// header.
 #include "../DeviceKernel.h"
 #include "../HolonomicConstraints.h"
 #include "StandIn.h"
@@ -6,16 +8,18 @@
 #include "openmm/OpenMMException.h"
 #include "openmm/common/ContextSelector.h"
 #include "openmm/kernels.h"
-#include "openmm/opencl/OpenCLPlatform.h"
+#include HOLONOMIC_PLATFORM_HEADER
 
 using namespace OpenMM;
 
 namespace {
 
-// With several devices it is the first that moves the atoms. An OpenCLContext begins as the ComputeContext that it is
-// derived from; its header needs others that are not installed everywhere.
+using DevicePlatform = HOLONOMIC_PLATFORM_CLASS;
+
+// With several devices it is the first that moves the atoms. An OpenCLContext, or its like, begins as the
+// ComputeContext that it is derived from; its header needs others that are not installed everywhere.
 ComputeContext &deviceOf(ContextImpl &context) {
-    auto *const data = static_cast<OpenCLPlatform::PlatformData *>(context.getPlatformData());
+    auto *const data = static_cast<DevicePlatform::PlatformData *>(context.getPlatformData());
     return *reinterpret_cast<ComputeContext *>(data->contexts.at(0));
 }
 
@@ -44,7 +48,7 @@ private:
 class OutsideOfSteps : public ApplyConstraintsKernel {
 public:
     OutsideOfSteps(const Platform &of, ContextImpl &context) : ApplyConstraintsKernel(Name(), of) {
-        static const OpenCLPlatform asItWas;
+        static const DevicePlatform asItWas;
         own = asItWas.createKernel(Name(), context);
     }
     void initialize(const System &system) override { ownKernel().initialize(system); }
@@ -87,7 +91,8 @@ extern "C" HOLONOMIC_OPENMM_EXPORT void registerPlatforms() {}
 extern "C" HOLONOMIC_OPENMM_EXPORT void registerKernelFactories() {
     for (int i = 0; i < Platform::getNumPlatforms(); ++i) {
         Platform &platform = Platform::getPlatform(i);
-        if (platform.getName() != "OpenCL" || platform.supportsKernels({HolonomicDeviceKernel::Name()})) continue;
+        if (platform.getName() != HOLONOMIC_PLATFORM_NAME || platform.supportsKernels({HolonomicDeviceKernel::Name()}))
+            continue;
         auto *const factory = new Factory();
         platform.registerKernelFactory(HolonomicDeviceKernel::Name(), factory);
         platform.registerKernelFactory(ApplyConstraintsKernel::Name(), factory);
