@@ -47,6 +47,7 @@ private:
     void forward(int k);
     void backward();
     void move();
+    std::string last_if(const char *limit) const;
     void end_pass(const char *is_done);
     void end(const char *store);
 
@@ -145,6 +146,14 @@ void Writer::end(const char *store) {
     out_ << "} else HOL_FAILED(atoms[" << kind_.n_atoms + 1 << "*HOL_WIDTH])\n";
 }
 
+// In larger molecules a look costs little beside the elimination, and compilers for processors make slow loops of a
+// second way out.
+std::string Writer::last_if(const char *limit) const {
+    constexpr int most_bonds = 6;
+    return "const int last = " + (n_bonds() <= most_bonds ? "HOL_NEXT_IS_LAST(" + std::string(limit) + ")" : "0") +
+           ";\n";
+}
+
 // Newton's iteration for the multipliers of the bonds s before the step. What is to vanish is (1 - d.d/a^2) / 2. It
 // ends at the rounding, or near it where a step gains nothing more; without a look where the multipliers are no larger
 // than the errors: then the matrix is far from singular.
@@ -159,7 +168,8 @@ std::string Writer::positions() {
              << bond(k).second << "); const mixed e = 0.5f - 0.5f*c" << k << "*dot(d, d); error += e*e; g" << k
              << " = (real) e; d" << k << " = HOL_ROUNDED(c" << k << "*d); }\n";
     out_ << "if (error <= rounding || (error <= 1000*rounding && 4*error >= before && pass > 0)) {\n"
-         << "solved = 1;\nbreak;\n}\nconst int last = HOL_NEXT_IS_LAST(rounding);\nbefore = error;\n";
+         << "solved = 1;\nbreak;\n}\n"
+         << last_if("rounding") << "before = error;\n";
     factorize();
     backward();
     out_ << "const real moved = ";
@@ -188,7 +198,8 @@ std::string Writer::velocities() {
             out_ << "rounding += dot(s" << k << ", s" << k << ")*dot(u" << atom << ", u" << atom << ");\n";
     out_ << "rounding *= HOL_ROUNDING*HOL_ROUNDING;\n}\n"
          << "if (error <= rounding/16 || (error <= 1000*rounding && 4*error >= before && pass > 0)) {\n"
-         << "solved = 1;\nbreak;\n}\nconst int last = HOL_NEXT_IS_LAST(rounding/16);\nbefore = error;\n";
+         << "solved = 1;\nbreak;\n}\n"
+         << last_if("rounding/16") << "before = error;\n";
     for (int k = 0; k < n_eliminated(); ++k) forward(k);
     backward();
     move();
