@@ -1,6 +1,6 @@
 """A peptide at constant energy, in water or alone: OpenMM's own constraints at two tolerances beside holonomic's.
 
-    beside.py [--steps N] [--platform CPU|Reference] [--step FEMTOSECONDS] [--vacuum]
+    beside.py [--steps N] [--platform CPU|Reference|OpenCL] [--precision mixed] [--step FEMTOSECONDS] [--vacuum]
 
 All bonds and the angles of hydrogens are rigid. Prints drift of the energy, largest error of a bond, and time per step, of all of it and
 of the constraints alone (positions and velocities once, from a trial displacement).
@@ -24,7 +24,8 @@ def run(base, start, velocities, platform, tolerance, holonomic, options):
         add_holonomic(system)
     integrator = mm.VerletIntegrator(options.step * unit.femtosecond)
     integrator.setConstraintTolerance(tolerance)
-    context = mm.Context(system, integrator, platform, {"Threads": "1"} if platform.getName() == "CPU" else {})
+    properties = {"CPU": {"Threads": "1"}, "OpenCL": {"Precision": options.precision}}
+    context = mm.Context(system, integrator, platform, properties.get(platform.getName(), {}))
     context.setPositions(start)
     context.applyConstraints(1e-10)
     context.setVelocities(velocities)
@@ -66,6 +67,7 @@ def main():
     parser.add_argument("--samples", type=int, default=40)
     parser.add_argument("--step", type=float, default=2.0)
     parser.add_argument("--platform", default="CPU")
+    parser.add_argument("--precision", default="mixed")
     parser.add_argument("--vacuum", action="store_true")
     options = parser.parse_args()
     platform = mm.Platform.getPlatformByName(options.platform)
