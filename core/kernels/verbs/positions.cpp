@@ -197,18 +197,12 @@ HOL_INLINE bool solve_molecules(const Block &block, Newton &x, const PositionsCa
 
 // Notes the worst bond of a block for the report. Few blocks have one that is worse than what was before.
 template <class View>
-HOL_NOINLINE void note_worst_of(const PositionsCall &call, const View &view, Block &block, const Newton &x, vec error,
-                                Tally &tally) {
-    for (int i = 0; i < W; ++i) block.chain[i] = view.chain_of(i);
-    note_worst(block, x, call, first_lanes(W), error, tally);
-}
-template <class View>
 HOL_INLINE void note_block(const PositionsCall &call, const View &view, Block &block, const Newton &x,
                            const NewtonOutcome &out, Tally &tally) {
     if (tally.worst_chain >= 0 && !any(~less(out.error, splat(tally.worst)))) return;
-    const Newton copy = x;
-    const View copied = view;
-    note_worst_of(call, copied, block, copy, out.error, tally);
+    for (int i = 0; i < W; ++i) block.chain[i] = view.chain_of(i);
+    const Newton copy = x;  // neither x nor the view is shown to a function that is not known here
+    note_worst(block, copy, call, first_lanes(W), out.error, tally);
 }
 
 // Single bonds, two blocks at a time: while one waits for its root and its quotient, the other is worked on. Ends
