@@ -96,6 +96,12 @@ namespace holonomic::HOL_ISA {
 
 constexpr int W = HOL_LANES;
 constexpr bool small_set = HOL_SMALL;
+// There are sixteen registers for vectors, not thirty-two.
+#if defined(__AVX512VL__) || defined(__aarch64__)
+constexpr bool few_registers = false;
+#else
+constexpr bool few_registers = true;
+#endif
 
 // mask: all bits of a lane set, or none.
 #if HOL_LANES > 1

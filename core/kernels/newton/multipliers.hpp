@@ -43,14 +43,14 @@ HOL_INLINE V solve_twice(const Model &x, V *tau) {
 
 // So many solves are enough where the step is small: one with the factors of the bonds as they came, and two.
 constexpr int fewest_solves = 3;
-// Returns the lanes in which they are not. There tau is what they have found.
+// Returns what the second has left of a^2: they were enough where that is less than small_enough.
 template <int N, class V, class Model>
-HOL_INLINE MaskOf<V> fewest_for_multipliers(const Model &x, V *tau) {
+HOL_INLINE V fewest_for_multipliers(const Model &x, V *tau) {
     V y[N];
     HOL_UNROLL
     for (int k = 0; k < N; ++k) y[k] = first_side(x.sigma[k], x.per_a2[k]);
     Model::solve(x.inverse(), y, tau);
-    return ~less(solve_twice<N>(x, tau), Width<V>::all(small_enough));
+    return solve_twice<N>(x, tau);
 }
 
 // Finds tau in the lanes of `active` by no more than `most` solves; it keeps the lanes that need more. In others tau is
@@ -58,8 +58,7 @@ HOL_INLINE MaskOf<V> fewest_for_multipliers(const Model &x, V *tau) {
 template <int N, class V, class Model>
 HOL_INLINE int64_t solve_for_multipliers(const Model &x, V *tau, MaskOf<V> &active, int most) {
     int64_t solves = fewest_solves;
-    const MaskOf<V> unsure = fewest_for_multipliers<N>(x, tau);
-    if (most >= solves) active = active & unsure;
+    active = active & ~less(fewest_for_multipliers<N>(x, tau), Width<V>::all(most < solves ? 0 : small_enough));
     for (; __builtin_expect(any(active), 0) && solves < 9 && solves + 2 <= most; solves += 2) {
         V before[Model::unknowns];
         HOL_UNROLL

@@ -124,7 +124,7 @@ HOL_INLINE NewtonOutcome solve_two_bonds(Newton &x, Carried &carried, mask wante
     vec tau[2];
     int64_t solves = fewest_solves;
     if constexpr (fewest)
-        unsure = fewest_for_multipliers<2>(m, tau);
+        unsure = ~less(fewest_for_multipliers<2>(m, tau), splat(small_enough));
     else
         solves = solve_for_multipliers<2>(m, tau, unsure, most);
     const mask near = wanted & ~out.untouched & open & ~unsure & carried.not_too_far(before, one);

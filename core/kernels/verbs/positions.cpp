@@ -323,8 +323,9 @@ static inline int64_t small_positions(const PositionsCall &call, const Unit &uni
             if (!call.report && !call.virial)
                 first = pairs_of_single_bonds<View, uniform, boxed>(call, unit, block, first, tally);
         return with_virial_or_not<View, boxed>(call.virial, [&](auto virial, auto box) {
-            // From where two bonds need more solves, the others are thought to need them: the loop takes registers.
-            if constexpr (View::bonds == 2 && View::packed && !virial && W > 1)
+            // The loop for more solves takes registers of two bonds: 1.04 of the time. From the first block on that
+            // needs them, all are thought to need them.
+            if constexpr (View::bonds == 2 && View::packed && !virial && W > 1 && few_registers)
                 first = positions_of_molecules<View, uniform, box, virial, true>(call, unit, block, first, tally);
             return positions_of_molecules<View, uniform, box, virial, false>(call, unit, block, first, tally);
         });
