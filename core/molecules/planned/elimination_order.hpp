@@ -59,6 +59,8 @@ public:
         fill_.row[n_++] = row;
     }
     void end_column(std::int32_t k);
+    // Of one whose least row was added first and couples all others already.
+    void end_full_column() { fill_.column_start.push_back(static_cast<std::int32_t>(n_)); }
     Fill made();
 
 private:
@@ -68,9 +70,10 @@ private:
 };
 
 // Where rows are coupled that meet somewhere, no two of them twice: meeting.begin(i) .. end(i), ascending, are those
-// that meet at i, and row k is at place(k, 0) and place(k, 1).
+// that meet at i, and row k is at place(k, 0) and place(k, 1). The first n_free fill nothing: all that are behind one
+// of them meet at one place.
 template <class Place>
-Fill fill_of(const Lists &meeting, std::int32_t n, const Place &place) {
+Fill fill_of(const Lists &meeting, std::int32_t n, std::int32_t n_free, const Place &place) {
     FillMaker maker(n);
     Numbers next = meeting.start;  // of each list the first row that is not eliminated
     for (std::int32_t k = 0; k < n; ++k) {
@@ -78,7 +81,7 @@ Fill fill_of(const Lists &meeting, std::int32_t n, const Place &place) {
             const std::int32_t i = place(k, end), behind = meeting.start[at(i) + 1];
             for (std::int32_t e = ++next[at(i)]; e < behind; ++e) maker.add_new(k, meeting.item[at(e)]);
         }
-        maker.end_column(k);
+        k < n_free ? maker.end_full_column() : maker.end_column(k);
     }
     return maker.made();
 }

@@ -232,7 +232,7 @@ Lists EliminationPlanner::meetings() const {
 
 // The factor's pattern.
 void EliminationPlanner::list_fill(const Lists &meeting) {
-    Fill fill = sorted(fill_of(meeting, s_.n_core,
+    Fill fill = sorted(fill_of(meeting, s_.n_core, 0,
                                [&](std::int32_t p, int end) { return (end ? m_.to : m_.from)[at(p)] - s_.n_tree; }));
     m_.column_start = std::move(fill.column_start);
     m_.row = std::move(fill.row);

@@ -40,7 +40,8 @@ private:
         Numbers next = bonds_.start;
         for (std::int32_t p = 0; p < s_.n_bonds; ++p)
             for (int end = 0; end < 2; ++end) bonds_.item[at(next[at(end_of(p, end))]++)] = p;
-        const Fill filled = fill_of(bonds_, s_.n_bonds, [&](std::int32_t p, int end) { return end_of(p, end); });
+        const Fill filled =
+            fill_of(bonds_, s_.n_bonds, s_.n_tree, [&](std::int32_t p, int end) { return end_of(p, end); });
         const ListOrder made = order_of_list(filled);
         column_of_.resize(made.column.size());
         for (std::size_t p = 0; p < made.column.size(); ++p) {
