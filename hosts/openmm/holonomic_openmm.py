@@ -5,7 +5,8 @@
     simulation = Simulation(topology, system, integrator, Platform.getPlatformByName("CPU"))
 
 Constraints are those of the System, whatever their shapes; they are right to the rounding of the coordinates, and the integrator's
-constraint tolerance is not looked at. Platforms CPU, Reference and OpenCL; others refuse.
+constraint tolerance is not looked at. Platforms CPU, Reference and OpenCL, and CUDA and
+HIP where the plugin was built for them; others refuse.
 """
 
 import ctypes
