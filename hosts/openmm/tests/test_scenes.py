@@ -264,7 +264,9 @@ class Scenes(unittest.TestCase):
                     now = positions(context)
                     self.assertLess(worst(now, constraints), rounding(platform))
                     site = 0.786646558 * now[0] + 0.106676721 * (now[1] + now[2])
-                    np.testing.assert_allclose(now[3], site, atol=10 * rounding(platform))
+                    # OpenMM places the site: in mixed precision by weights in single.
+                    bound = 1e-6 if platform.endswith("mixed") else 10 * rounding(platform)
+                    np.testing.assert_allclose(now[3], site, atol=bound)
 
     def test_minimisation(self):
         for platform in PLATFORMS:
