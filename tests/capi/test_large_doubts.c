@@ -127,6 +127,51 @@ static void a_ladder_is_solved(void **state)
     check_equations_are_solved(ladder(quick_run() ? 2000 : 40000));
 }
 
+/** An atom of many arms, of two bonds each, and a tree on the last of them whose first atoms have ten children and
+ * more. Masses over seven decades. */
+static molecule crowded_atom(int64_t arms, int64_t branches)
+{
+    molecule m = molecule_empty();
+    random_stream random = random_seed(6);
+    double at[3] = {0, 0, 0}, u[3];
+    int64_t end = molecule_add_atom(&m, exp(8 - 16 * random_uniform(&random)), at);
+    for (int64_t k = 0; k < 2 * arms; ++k) {
+        random_direction(&random, u);
+        end = molecule_grow(&m, k % 2 ? end : 0, exp(8 - 16 * random_uniform(&random)), 1, u);
+    }
+    const int64_t first = end;
+    for (int64_t k = 0; k < branches; ++k) {
+        const int64_t from = first + (int64_t)((double)(k + 1) * random_uniform(&random));
+        random_direction(&random, u);
+        molecule_grow(&m, from, exp(8 - 16 * random_uniform(&random)), 1, u);
+    }
+    molecule_finish(&m, &random);
+    return m;
+}
+
+/** Twice the precision beside an atom of more bonds than have a table of their products (64). */
+static void what_hangs_on_a_crowded_atom_is_solved(void **state)
+{
+    (void)state;
+    for (int64_t branches = 300; branches <= (quick_run() ? 300 : 3000); branches *= 10) {
+        molecule m = crowded_atom(70, branches);
+        const size_t n = 3 * (size_t)m.n_atoms;
+        hol_chains *chains = large_chains(&m);
+        hol_worst worst;
+        double *r = untouched(n), *v = untouched(n);
+        for (size_t i = 0; i < n; ++i) v[i] = m.v[i], r[i] = m.r[i] + 1e-5 * m.v[i];
+        CHECK(hol_project_positions(chains, m.r, r, NULL, 1e-5, NULL, 0, NULL, NULL));
+        CHECK(hol_violation(chains, r, NULL, &worst));
+        CHECK_AT_MOST(worst.length, 1e-12);
+        CHECK(hol_project_velocities(chains, m.r, v, NULL, NULL));
+        CHECK(hol_violation(chains, m.r, v, &worst));
+        CHECK_AT_MOST(worst.rate, 1e-11);
+        hol_chains_destroy(chains);
+        free(r), free(v);
+        check_equations_are_solved(m);
+    }
+}
+
 /** Three arms that divide in two, level by level. */
 static molecule dendrimer(int levels)
 {
@@ -178,6 +223,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(straight_strands_are_solved),
         cmocka_unit_test(a_ladder_is_solved),
+        cmocka_unit_test(what_hangs_on_a_crowded_atom_is_solved),
         cmocka_unit_test(uneven_sides_of_a_large_dendrimer_are_solved),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -11,9 +11,9 @@ inline constexpr int64_t extended_scratch_bytes(int64_t n_atoms, int64_t n_bonds
                                                 int64_t n_core, int64_t fill) {
     const int64_t wide = n_bonds > most_quad_double ? 16 : 32, vector = 3 * wide, most_arrays = 64;
     const int64_t per_bond = 4 * vector + 14 * wide + 40, per_atom = 2 * vector + 24;
-    const int64_t joint =
-        most_arms * (2 * vector + wide + 32) +
-        (most_arms > most_in_table ? 19 * wide * most_arms : 2 * (vector + 8) * (most_arms * most_arms));
+    const int64_t in_table = most_arms > most_in_table ? most_in_table : most_arms;
+    const int64_t joint = most_arms * (2 * vector + wide + 32) + 2 * (vector + 8) * (in_table * in_table) +
+                          (most_arms > most_in_table ? 19 * wide * most_arms : 0);
     return per_bond * n_bonds + per_atom * n_atoms + joint + wide * (2 * table + 5 * n_core + 3 * fill) +
            8 * (n_core + fill) + 64 * most_arrays;
 }

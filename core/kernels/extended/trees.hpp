@@ -9,7 +9,8 @@
 namespace holonomic::HOL_ISA::extended {
 
 HOL_NOINLINE Joint take_joint(int32_t most, bool mixed, ByteArena &memory) {
-    const int64_t n = most, pairs = n > most_arms ? 0 : n * n;
+    // Beside an atom of many arms there are others, which have products of pairs.
+    const int64_t n = most, in_table = n > most_arms ? most_arms : n, pairs = in_table * in_table;
     Joint x = {};
     x.mixed = mixed;
     x.D = memory.take<Wide3>(n);
