@@ -11,6 +11,11 @@ namespace holonomic {
 
 using Numbers = std::vector<std::int32_t>;
 
+template <class T>
+std::int32_t size_of(const std::vector<T> &list) {
+    return static_cast<std::int32_t>(list.size());
+}
+
 // So many that are -1: of what has no number yet. Its bytes are set, which is faster than number by number.
 inline Numbers minus_ones(std::int32_t n) {
     Numbers numbers(at(n));

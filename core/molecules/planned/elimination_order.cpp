@@ -175,15 +175,19 @@ void FillMaker::end_column(std::int32_t k) {
         const std::size_t first = at(fill_.column_start[at(c)]), end = at(fill_.column_start[at(c) + 1]);
         for (std::size_t e = first + 1; e < end; ++e) add(k, fill_.row[e]);
     }
-    check_count(static_cast<std::int64_t>(n_));
     std::int32_t *const first = fill_.row.data() + fill_.column_start.back(), *const end = fill_.row.data() + n_;
-    fill_.column_start.push_back(static_cast<std::int32_t>(n_));
+    end_full_column();
     if (first == end) return;
     std::int32_t *least = first;
     for (std::int32_t *e = first + 1; e < end; ++e) least = *e < *least ? e : least;
     std::swap(*first, *least);
     next_child_[at(k)] = child_[at(*first)];
     child_[at(*first)] = k;
+}
+
+void FillMaker::end_full_column() {
+    check_count(static_cast<std::int64_t>(n_));
+    fill_.column_start.push_back(static_cast<std::int32_t>(n_));
 }
 
 Fill FillMaker::made() {

@@ -60,7 +60,7 @@ public:
     }
     void end_column(std::int32_t k);
     // Of one whose least row was added first and couples all others already.
-    void end_full_column() { fill_.column_start.push_back(static_cast<std::int32_t>(n_)); }
+    void end_full_column();
     Fill made();
 
 private:

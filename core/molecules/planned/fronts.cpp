@@ -15,8 +15,6 @@ namespace {
 // A part of so many unknowns is not halved: its matrix is dense enough.
 constexpr std::int32_t most_of_leaf = 40;
 
-std::int32_t size_of(const Numbers &list) { return static_cast<std::int32_t>(list.size()); }
-
 class FrontMaker {
 public:
     FrontMaker(const NetworkPlan &s, const unsigned char *fixed, FrontArrays &a)

@@ -8,11 +8,6 @@
 
 namespace holonomic {
 
-template <class T>
-std::int32_t size_of(const std::vector<T> &list) {
-    return static_cast<std::int32_t>(list.size());
-}
-
 // What the second step needs to know of the first. A column is a bond in the order of elimination.
 struct LdlColumns {
     Numbers start, row;          // of the factor's columns

@@ -9,8 +9,6 @@ namespace {
 
 constexpr std::int32_t bonds_of_share = 2048, nodes_of_share = 512;
 
-std::int32_t size_of(const Numbers &list) { return static_cast<std::int32_t>(list.size()); }
-
 bool is_node(const EliminationPlan &s, std::int32_t index) {
     const std::int32_t c = index - s.n_tree;
     return s.meet_start[c + 1] - s.meet_start[c] != 2 || s.child_start[index + 1] > s.child_start[index];
